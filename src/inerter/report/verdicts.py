@@ -27,7 +27,7 @@ from inerter.figures.labels import (
     one_method,
 )
 from inerter.files.study.study import Study
-from inerter.formatting import format_list, format_quantity
+from inerter.formatting import format_list
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
 
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
 _STATIC = "the static limit, which no damper or inerter lowers"
 _TWO_SIDED = 2.0  # standard errors of a difference that is not significant
+_DIMS = ("layout", "parameter", "other")  # of what a decision compares
 _ELSEWHERE = (CaveatKind.LIMIT, CaveatKind.NEGLECTED)  # said once for all indices, in the sentence on limits and notes
 
 
@@ -69,9 +70,8 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
     method = decisive_method(methods(results)) if methods(results) else ""
     one = by_method(results, method) if method else results
     row = one.sel(index=index)
-    row = row.squeeze(
-        [name for name, size in row.sizes.items() if size == 1 and name not in ("layout", "parameter", "other")]
-    )
+    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name not in _DIMS])
+    row = row.drop_dims([name for name in row.dims if name not in _DIMS])
     designs = [_design(results, row, index, name, method, study) for name in layouts(results)]
 
     def over(first: DesignResult, second: DesignResult) -> Improvement | None:
@@ -95,7 +95,10 @@ def _design(
 ) -> DesignResult:
     """Best design of a layout for an index, as a decision compares it."""
     design, baseline = row.sel(layout=layout), row.attrs["baseline"]
-    modelled, neglected = ((), ()) if study is None else _nonlinear(study, layout, method)
+    base = row.sel(layout=baseline) if baseline else None
+    modelled, neglected = (
+        nonlinear_elements(study.design(layout).mechanism(), method) if study is not None and method else ((), ())
+    )
     return DesignResult(
         name=layout,
         goal=IndexResult(
@@ -106,19 +109,15 @@ def _design(
             status=_status(results, design, method),
             standard_error=error_of(design),
             error_bound=bound_of(design),
-            improvement=None if layout == baseline else _improvement(row, layout),
+            improvement=None if base is None or layout == baseline else _improvement(row, design, base),
         ),
-        others=tuple(_others(results, row, index, layout)),
+        others=() if base is None else tuple(_others(results, index, design, base)),
         at_bounds=tuple(_at_bounds(design)),
         modelled=modelled,
         neglected=neglected,
         is_baseline=layout == baseline,
         n_elements=int(design["elements"]) if "elements" in design.coords else 0,
     )
-
-
-def _nonlinear(study: Study, layout: str, method: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    return nonlinear_elements(study.design(layout).mechanism(), method) if method else ((), ())
 
 
 def _status(results: xr.Dataset, design: xr.Dataset, method: str) -> Status:
@@ -128,18 +127,17 @@ def _status(results: xr.Dataset, design: xr.Dataset, method: str) -> Status:
     return with_decisive_method(status, method) if method and len(methods(results)) == 1 else status
 
 
-def _improvement(row: xr.Dataset, layout: str) -> Improvement | None:
-    """Improvement over the baseline; None without a baseline, or if one of them has no finite value."""
-    design, baseline = row.sel(layout=layout), row.attrs["baseline"]
-    percent = float(design["improvement"])
-    if not baseline or not isfinite(percent):
+def _improvement(row: xr.Dataset, design: xr.Dataset, base: xr.Dataset) -> Improvement | None:
+    """Improvement over the baseline; None if one of them has no finite value."""
+    percent, own, reference = float(design["improvement"]), float(design["value"]), float(base["value"])
+    if not isfinite(percent):
         return None
-    own, base = float(design["value"]), float(row["value"].sel(layout=baseline))
+    margin = _margin(row, str(design["layout"].item()), str(base["layout"].item()))
     return Improvement(
         percent,
         error_of(design, "improvement"),
         bound_of(design, "improvement"),
-        abs(percent * base) / 100.0 <= _margin(row, layout, baseline) + 2.0 * ACCURACY * min(abs(own), abs(base)),
+        abs(percent * reference) / 100.0 <= margin + 2.0 * ACCURACY * min(abs(own), abs(reference)),
     )
 
 
@@ -151,7 +149,7 @@ def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improve
     percent = percent_below(own, other)
     if isnan(percent):
         return None
-    errors = [_relative_error(row, one.name) * one.goal.value for one in (first, second)]
+    errors = [_relative_error(row.sel(layout=one.name)) * one.goal.value for one in (first, second)]
     margin = _margin(row, first.name, second.name)
     return Improvement(
         percent,
@@ -186,39 +184,31 @@ def _margins(row: xr.Dataset, best: int) -> list[float]:
     return [float(margin) for margin in np.nan_to_num(found)]
 
 
-def _relative_error(row: xr.Dataset, layout: str) -> float:
-    design = row.sel(layout=layout)
+def _relative_error(design: xr.Dataset) -> float:
     error, value = error_of(design), float(design["value"])
     return error / abs(value) if isfinite(error) and value else 0.0
 
 
-def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> Iterator[IndexResult]:
+def _others(results: xr.Dataset, index: str, design: xr.Dataset, base: xr.Dataset) -> Iterator[IndexResult]:
     """Other indices of the same design, compared with those of the baseline's design.
 
     Their standard errors are not among the results; those of the index itself, relative to it, take their place.
     """
-    baseline = row.attrs["baseline"]
-    if "other_value" not in row or not baseline:
+    if "other_value" not in design:
         return
-    spread = 100.0 * hypot(_relative_error(row, layout), _relative_error(row, baseline))
-    for other in results["other"].values.tolist():
-        own, base = (float(row["other_value"].sel(layout=name, other=other)) for name in (layout, baseline))
-        by, percent = None, percent_below(own, base)
-        if other != index and layout != baseline and isfinite(percent):
-            by = Improvement(
-                percent, bound=_other_bound(row, layout, other), is_tie=abs(percent) <= _TWO_SIDED * spread
-            )
-        if other != index and not (np.isnan(own) and np.isnan(base)):
+    spread = 100.0 * hypot(_relative_error(design), _relative_error(base))
+    for i, other in enumerate(results["other"].values.tolist()):
+        own, reference = (float(one["other_value"].values[i]) for one in (design, base))
+        by, percent = None, percent_below(own, reference)
+        if design["layout"].item() != base["layout"].item() and isfinite(percent):
+            bounds = [
+                float(one["other_error_bound"].values[i]) if "other_error_bound" in one else nan
+                for one in (design, base)
+            ]
+            is_tie = abs(percent) <= _TWO_SIDED * spread
+            by = Improvement(percent, bound=improvement_bound(own, reference, *bounds), is_tie=is_tie)
+        if other != index and not (isnan(own) and isnan(reference)):
             yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
-
-
-def _other_bound(row: xr.Dataset, layout: str, other: str) -> float:
-    """Largest error of an improvement in another index [%]."""
-    if "other_error_bound" not in row:
-        return nan
-    entries = [row.sel(layout=name, other=other) for name in (layout, row.attrs["baseline"])]
-    values, bounds = ([float(one[name]) for one in entries] for name in ("other_value", "other_error_bound"))
-    return improvement_bound(*values, *bounds)
 
 
 def _at_bounds(design: xr.Dataset) -> Iterator[str]:
@@ -245,18 +235,10 @@ def _with_other_methods(results: xr.Dataset, index: str, told: Decision) -> str:
 
 def _clause(results: xr.Dataset, index: str, told: Decision) -> str:
     """Clause on the best layouts by another method."""
-    best, baseline = best_layouts(results, index), results.attrs["baseline"]
-    if not best:
+    winners = study_decision(results, index).winners
+    if not winners:
         return "there is none"
-    design = results.sel(layout=best[0], index=index)
-    percent = float(design["improvement"])
-    by = Improvement(percent, error_of(design, "improvement"), bound_of(design, "improvement"))
-    same = {one.name for one in told.winners} == set(best)
-    who = f"still {format_list(best)}" if same else f"{format_list(best)}, {_value(results, design, index)}"
-    compared = best[0] != baseline and isfinite(percent) and not by.is_equal
-    return f"{who}{f', {by.words}' if compared else ''}"
-
-
-def _value(results: xr.Dataset, design: xr.Dataset, index: str) -> str:
-    unit = index_unit(results, index)
-    return format_quantity(float(design["value"]), unit, error=error_of(design), bound=bound_of(design))
+    names, goal = [one.name for one in winners], winners[0].goal
+    same = {one.name for one in told.winners} == set(names)
+    who = f"still {format_list(names)}" if same else f"{format_list(names)}, {goal.text}"
+    return f"{who}, {goal.improvement.words}" if goal.improvement is not None and not goal.improvement.is_equal else who

@@ -12,7 +12,6 @@ from inerter.files.study.places import with_numbers
 from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import format_quantity
-from inerter.signals.road import Road
 
 _ROUGHNESS, _SPEED = "road.roughness", "road.speed"
 
@@ -21,7 +20,7 @@ def roads_sentences(study: Study) -> list[str]:
     """Sentence on the class of the road and the speed, as far as both are fixed; none without a road."""
     if study.road is None:
         return []
-    roads = sorted(_roads(study), key=lambda road: road.roughness)
+    roads = sorted(filter(None, (one.road for one in _variants(study))), key=lambda road: road.roughness)
     if _ROUGHNESS in study.varied_labels and len({road.roughness for road in roads}) > 1:
         return [f"Roads: from {class_words(roads[0])} to {class_words(roads[-1])}."]
     speed = as_written(study, study.road.speed, "m/s") or format_quantity(study.road.speed, "m/s")
@@ -39,10 +38,6 @@ def input_warnings(study: Study) -> list[str]:
             elements = [(name, element) for name, element in one.elements.items() if name in used]
             found |= dict.fromkeys([*road_warnings(one.road), *vehicle_warnings(one.model, one.vehicle, elements)])
     return list(found)
-
-
-def _roads(study: Study) -> Iterator[Road]:
-    return (one.road for one in _variants(study) if one.road is not None)
 
 
 def _variants(study: Study) -> Iterator[Study]:

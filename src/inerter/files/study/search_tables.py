@@ -63,7 +63,8 @@ def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tup
 
 def ranking_table(study: Study, one: LayoutSearch) -> Table:
     """The best networks with their values; an asterisk marks a value at a bound."""
-    names = _parameters(one.result.ranking[:RANKED])
+    best = one.result.ranking[:RANKED]
+    names = _parameters(best)
     heads = [
         *columns("Rank", one.index),
         Column("Network", words=True),
@@ -71,14 +72,13 @@ def ranking_table(study: Study, one: LayoutSearch) -> Table:
         *(Column(name, listed="Values") for name in names),
     ]
     rows = []
-    for rank, found in enumerate(one.result.ranking[:RANKED], 1):
+    for rank, found in enumerate(best, 1):
         values = [_value_text(study, found, name) if name in found.parameters else None for name in names]
         agreement = f"{found.n_converged} of {found.n_starts}" if found.n_converged else None
         content = cells(f"{rank}", Quantity(found.value, found.unit), found.layout, agreement, *values)
         rows.append(Row(content, status=found.status.doubt))
-    count = len(one.result.ranking)
-    what = f"{capital(one.heading)}: the best {min(RANKED, count)} of {one.result.n_networks} networks"
-    return Table(f"{what} (* at a bound)" if _any_at_bound(one.result.ranking[:RANKED]) else what, heads, rows)
+    what = f"{capital(one.heading)}: the best {len(best)} of {one.result.n_networks} networks"
+    return Table(f"{what} (* at a bound)" if any(found.active_bounds for found in best) else what, heads, rows)
 
 
 def fixed_table(found: StudySearch) -> Table | None:
@@ -289,7 +289,3 @@ def _parameters(found: Iterable[FoundNetwork | FrontNetwork | RealResult]) -> li
 def _value_text(study: Study, found: FoundNetwork, name: str) -> str:
     text = format_quantity(found.parameters[name], parameter_unit(study, name))
     return f"{text}*" if name in found.active_bounds else text
-
-
-def _any_at_bound(found: tuple[FoundNetwork, ...]) -> bool:
-    return any(network.active_bounds for network in found)

@@ -43,7 +43,7 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
     if not study.needs_road(index):
         return {}, ""
     asked, method = study.resolve_index(index, layout), quick_method(study, vehicle)
-    if not (_is_late(vehicle, asked) or (not is_blind(method) and _rubs(vehicle))):
+    if not (_is_late(vehicle, asked) or (not is_blind(method) and has_friction(vehicle.mechanism()))):
         return {}, ""
     found = [value_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
     values, messages = [value for value, _ in found], [message for _, message in found if message]
@@ -75,10 +75,6 @@ def quick_method(study: Study, vehicle: Vehicle) -> str:
     """Method for values at other speeds: the first of `evaluate`, or one that does not average random roads."""
     first = study.evaluate[0]
     return without_roads(first, has_play=averages(first) and has_play(piecewise(vehicle)))
-
-
-def _rubs(vehicle: Vehicle) -> bool:
-    return has_friction(vehicle.mechanism())
 
 
 def _is_late(vehicle: Vehicle, asked: IndexLike) -> bool:

@@ -69,6 +69,7 @@ def report(
         study,
         conclusion_sentences(results, study, found),
         [index_words(results, index) for index in indices(results)],
+        title=results.attrs["title"],
         swept=bool(swept_places(results)),
         searched=study.optimise is not None,
         drawings={
@@ -89,9 +90,7 @@ def study_page(study: Study, answers: Iterable[str], words: Sequence[str], **res
     """Page of results on a study: `answers` in sentences, its problem with the titles of the indices, and the rest."""
     page = environment().get_template("report.html")
     headlines = [*answers, *roads_sentences(study)]
-    return with_contents(
-        page.render(title=study.title, headlines=headlines, **problem_statement(study, words), **results)
-    )
+    return with_contents(page.render(headlines=headlines, **problem_statement(study, words), **results))
 
 
 def page_figures(folder: Path, name: str, caption: str, *, natural: bool = False) -> Iterator[PageFigure]:

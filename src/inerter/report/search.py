@@ -174,6 +174,7 @@ def write_search_report(found: StudySearch, folder: Path) -> None:
         study,
         search_sentences(found),
         [f"{study.index(name).title} ({name})" for name in study.indices],
+        title=study.title,
         swept=False,
         searched=True,
         drawings={},

@@ -156,6 +156,10 @@ WRONG = {
     "free values in evaluate": (lambda: evaluate(open_car(), J1, Norm()), "still has free values: c, b"),
     "nothing to optimise": (lambda: optimise(car(), J1, Norm()), "no free value"),
     "no starts": (lambda: optimise(open_car(), J1, Norm(), starts=0), "`starts` must be a positive integer, got 0"),
+    "a truth for a seed": (
+        lambda: optimise(open_car(), J1, Norm(), seed=True),
+        "`seed` must be a non-negative integer",
+    ),
     "seed as text": (lambda: optimise(open_car(), J1, Norm(), seed="0"), "`seed`"),
     "a free value without effect": (
         lambda: optimise(car(k | Friction(free(1.0, 5.0, "f")) | Damper(free(10.0, 1e6, "c"))), J1, Norm()),

@@ -284,7 +284,10 @@ def remark(line: MeasuredLine | None) -> str:
     """Comment lines above the roughness that was fitted to a profile; empty without one."""
     if line is None:
         return ""
-    text = f"{line.note[0].upper()}{line.note[1:]}. SHA-256 of the file: {line.digest}"
+    text = (
+        f"{line.note[0].upper()}{line.note[1:]}. Results of this file have that roughness, and leave the errors of the "
+        f"line out. SHA-256 of the file: {line.digest}"
+    )
     return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"
 
 

@@ -10,7 +10,7 @@ friction sticks and c is infinite.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,7 +20,19 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError, PerformanceIndexError, Status, StatusKind, with_article
 from inerter.formatting import format_share
 from inerter.indices.definition import IndexDefinition
-from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Network, Tied, Value, middle
+from inerter.networks.elements import (
+    CombinedNetwork,
+    Damper,
+    Element,
+    Free,
+    Friction,
+    Gap,
+    Network,
+    Series,
+    Tied,
+    Value,
+    middle,
+)
 from inerter.networks.elements.roles import LinearRole, StatisticalRole
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import Descriptor, close, describe
@@ -46,6 +58,7 @@ class Equivalent:
     locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
     forces: tuple[Value, ...]  # of each friction [N], or the free value that has this one, ...
     gains: tuple[float, ...]  # ... times its gain
+    springy: tuple[bool, ...]  # which are in series with a spring: see `_behind_springs`
     design: tuple[str, ...]  # free values of the mechanism that it stands for
     scale: float  # a damping typical of the mechanism [N s/m]
 
@@ -154,6 +167,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     moving = {branch.label for branch in linear_graph(other).branches}
     names = tuple(name for name in found if name in moving)
     frictions = [found[name][1] for name in names]
+    springy = {id(element) for mount in mechanism.mounts() for element in _behind_springs(mount.network)}
     return Equivalent(
         mechanism=other,
         dampers=names,
@@ -162,9 +176,27 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
         locked=tuple(words for name, (words, _) in found.items() if name in locked),
         forces=tuple(e.value if isinstance(e.value, Free) else e.coefficient for e in frictions),
         gains=tuple(e.gain if isinstance(e.value, Free) else 1.0 for e in frictions),
+        springy=tuple(id(element) in springy for element in frictions),
         design=tuple(mechanism.free_values()),
         scale=scale,
     )
+
+
+def _behind_springs(network: Network) -> Iterator[Element]:
+    """Elements of parts without inerters that are in series with a spring.
+
+    A friction there sticks while the spring moves (a Jenkins element), for as long as a slow force takes to reach it;
+    the force through an inerter changes at once.
+    """
+    if not isinstance(network, CombinedNetwork):
+        return
+    roles = [{element.linear for element in part.elements()} for part in network.parts]
+    for i, part in enumerate(network.parts):
+        others = set().union(*(own for j, own in enumerate(roles) if j != i))
+        if isinstance(network, Series) and LinearRole.STIFFNESS in others and LinearRole.MASS not in roles[i]:
+            yield from part.elements()
+        else:
+            yield from _behind_springs(part)
 
 
 def slipping_freely(mechanism: Mechanism, definition: IndexDefinition) -> frozenset[str]:

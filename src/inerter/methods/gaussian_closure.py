@@ -43,6 +43,7 @@ _LOCKED = 0.02  # d log(force) / d log(damper) below which a friction whose forc
 _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 _UNLIKE = (0.03, 0.45)  # error of the index where that is 1 - x, over x and x^2: velocities are not Gaussian then
 _SHARE = (0.06, 0.82)  # the same as a share of the range that the index has over all dampers
+_SPRINGY = 2.2  # times both for a friction that a spring is in series with: it sticks for longer
 _SLIPPED = 2.4  # times the share of the time in which the force through a rigid link exceeds friction: the error
 _NEGLIGIBLE = 0.1  # of the promise, up to which the error by one friction is not looked at twice
 _BETWEEN = 13  # dampers that stand for all that a friction may become
@@ -73,6 +74,11 @@ class Dampers:
         return Dampers(
             self.damping[designs], self.sticks[designs], self.error[designs], self.unlike[designs], self.share[designs]
         )
+
+    def with_larger_errors(self, factors: Array) -> Dampers:
+        """The same dampers where each friction (frictions,) may be off by so many times as much."""
+        unlike, share = self.unlike * factors, self.share * factors
+        return replace(self, unlike=np.where(unlike <= PROMISE, unlike, np.inf), share=np.minimum(share, 1.0))
 
 
 def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.bool_] | None = None) -> Dampers:
@@ -175,7 +181,8 @@ class Pattern:
         if not start.shape[1]:
             none = np.zeros(start.shape, dtype=bool)
             return Dampers(start, none, np.zeros(points.shape[0]), np.zeros(start.shape), np.zeros(start.shape))
-        return solve_dampers(speeds, GAUSSIAN.force(self.parts.limits(points)), start, held)
+        found = solve_dampers(speeds, GAUSSIAN.force(self.parts.limits(points)), start, held)
+        return found.with_larger_errors(np.where(self.parts.springy, _SPRINGY, 1.0))
 
     def combine(self, norms: Array) -> Array:
         """The index of norms (..., outputs)."""

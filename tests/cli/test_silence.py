@@ -274,3 +274,20 @@ def test_a_run_tells_where_it_is_within_a_design(tmp_path: Path) -> None:
     between, lines = gaps([sys.executable, "-c", slow, "run", str(path), "-o", str(tmp_path / "out"), "-j", "1"])
     assert sum("S J1: search: starts" in line and "lowest" in line for line in lines) >= 2, lines
     assert max(between) < 3.0 * SILENCE
+
+
+def test_a_workbench_that_waits_for_the_page_says_nothing(tmp_path: Path) -> None:
+    """It is ready once it has said its link, however long nobody asks for anything."""
+    code = f"from inerter.cli import main, pulse; pulse._SILENCE /= {FASTER}; pulse._LOOK /= {FASTER}; main.main()"
+    with (tmp_path / "said.txt").open("w+", encoding="utf-8") as said:
+        command = [sys.executable, "-c", code, "serve", "--no-browser"]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=said, text=True, cwd=tmp_path)
+        try:
+            assert process.stdout is not None
+            assert "#token=" in process.stdout.readline()
+            before = len((tmp_path / "said.txt").read_text(encoding="utf-8"))
+            time.sleep(3.0 * SILENCE / FASTER)
+            assert "preparing" not in (tmp_path / "said.txt").read_text(encoding="utf-8")[before:]
+        finally:
+            process.terminate()
+            process.communicate(timeout=30)

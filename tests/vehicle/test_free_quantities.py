@@ -178,6 +178,9 @@ TWICE = {
     "below a stage": lambda network: it.Seat(
         it.QuarterCar(250.0, FREE_MASS, 150e3, STRUT), 60.0, network("unsprung_mass")
     ),
+    "of one part, with the name of another": lambda network: it.Seat(
+        it.Absorber(1e3, 40e3, 50.0, network("mass")), FREE_MASS, it.Spring(10e3), place={"primary": 1.0}
+    ),
     "coordinate": lambda network: it.Mechanism(
         (it.Coordinate("body", FREE_MASS),), (it.Strut("strut", network("body"), {"body": 1.0}, it.GROUND),)
     ),
@@ -191,6 +194,14 @@ def test_a_quantity_and_an_element_are_one_free_value_only_where_both_were_given
     apart = TWICE[where](lambda name: _free_inerter("b"))
     assert len(apart.free_values()) == 2
     assert apart.with_values({"b": 30.0}).free_values().keys() == apart.free_values().keys() - {"b"}
+
+
+def test_two_free_quantities_of_one_name_are_refused_until_one_is_named() -> None:
+    absorber = it.Absorber(1e3, 40e3, FREE_MASS, it.Spring(4e3) | it.Damper(200.0))
+    with pytest.raises(it.InerterError, match="'mass' is free in two parts of the vehicle: they would be one value"):
+        it.Seat(absorber, FREE_MASS, it.Spring(10e3), place={"primary": 1.0})
+    apart = it.Seat(absorber, it.free(20.0, 500.0, name="driver"), it.Spring(10e3), place={"primary": 1.0})
+    assert apart.free_values().keys() == {"mass", "driver"}
 
 
 def test_free_values_that_were_given_one_name_are_one() -> None:

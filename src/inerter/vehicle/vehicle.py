@@ -150,17 +150,26 @@ def name_free_quantities(of: Any, what: str) -> None:
 
 
 def check_free_quantities(of: VehicleModel | Stage) -> None:
-    """Raises `DesignError` if a free quantity, also of what a stage stands on, has the name of a free element."""
+    """Raises `DesignError` if a free quantity has the name of another one or of an element, also below a stage.
+
+    Who wants one value of both gives both a name of their own.
+    """
     parts: list[Vehicle] = [of]
     while isinstance(part := parts[-1], Stage):
         parts.append(part.vehicle)
     models = [part for part in parts if isinstance(part, VehicleModel | Stage)]
-    values = {field.name: getattr(model, field.name) for model in models for field in fields_of(type(model))}
-    free = {name: value for name, value in values.items() if isinstance(value, Free)}
+    values = [(field.name, getattr(model, field.name)) for model in models for field in fields_of(type(model))]
+    free = [(name, value) for name, value in values if isinstance(value, Free)]
     if free:
         of.mechanism()  # which checks for duplicate names
-        names = {name for name, value in free.items() if value.name == name}
-        check_named_apart(names, chain.from_iterable(map(_given_networks, parts)), "a quantity of the vehicle")
+        names = [name for name, value in free if value.name == name]
+        for name in names:
+            if names.count(name) > 1:
+                raise DesignError(
+                    f"{name!r} is free in two parts of the vehicle: they would be one value. Fix one of them, or give "
+                    "it a name of its own."
+                )
+        check_named_apart({*names}, chain.from_iterable(map(_given_networks, parts)), "a quantity of the vehicle")
 
 
 def _given_networks(part: Vehicle) -> Iterable[Network]:

@@ -26,8 +26,8 @@ import { open } from "./remembering.js";
 /** @import { Store } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
 
-/** What is below the vehicle in motion: a tab a row. */
-/** What the tabs show; `ofDesign` ones need the values of a network, which a free network has not yet. */
+/** What is below the vehicle in motion: a tab a row. Those `ofDesign` need the values of a network, which a free
+ * network has not yet. */
 const TABS = [
   { key: "response", title: "Response", Panel: ResponsePanel },
   { key: "history", title: "On the road", Panel: HistoryPanel, ofDesign: true },

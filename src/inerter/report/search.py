@@ -28,6 +28,7 @@ from inerter.files.study.search_tables import (
 )
 from inerter.files.study.searching import TABLE, LayoutFront, LayoutSearch, StudySearch, tables_of
 from inerter.formatting import capital, format_list, format_percent, format_quantity
+from inerter.indices.names import title_with_name
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
 from inerter.report.json_data import json_data
@@ -173,7 +174,7 @@ def write_search_report(found: StudySearch, folder: Path) -> None:
     page = study_page(
         study,
         search_sentences(found),
-        [f"{study.index(name).title} ({name})" for name in study.indices],
+        [title_with_name(study.index(name).title, name) for name in study.indices],
         title=study.title,
         swept=False,
         searched=True,

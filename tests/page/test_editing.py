@@ -204,7 +204,7 @@ def test_what_is_typed_right_after_a_click_belongs_to_the_layout_that_was_clicke
 
     def shown(layout: str) -> str:
         page.locator(f".answers .pick[title={layout}]").click()
-        page.wait_for_selector(f".values h3:has-text('Strut {layout}')")
+        page.wait_for_selector(f".values h3:text-is('Strut {layout}')")  # not of `S3e` for `S3`
         return str(page.get_attribute("[id='entry elements.c']", "title"))
 
     layouts = page.locator(".answers .pick").evaluate_all("all => all.map(each => each.title)")

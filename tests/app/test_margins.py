@@ -38,7 +38,7 @@ def car(name: str) -> Any:
     return study_from(FEW).design(name).with_values(VALUES[name])
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str, Any]) -> None:
     """Friction of the design, and the shaft and backlash of a real inerter; none of them by a method blind to it."""
     by = {one["parameter"]: one for one in told["break_even"]}

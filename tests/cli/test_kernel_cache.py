@@ -141,7 +141,7 @@ def test_another_installation_of_the_same_sources_uses_the_cache(tmp_path: Path)
     assert len([*(tmp_path / "cache").rglob("*.nbc")]) == 1
 
 
-@pytest.mark.parametrize("seed", sampled(range(8), kept=2))
+@pytest.mark.parametrize("seed", sampled(range(8), kept=1))
 def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: Path, seed: int) -> None:
     """Three bits of machine code, or one of the constant in it: compiled again, never another number."""
     cache, rng = tmp_path / "cache", random.Random(seed)

@@ -181,6 +181,7 @@ BRIEF = [
 SELDOM = [  # those that take long, and of which a part, or what is much the same, is a campaign
     WHOLE,
     "inerter reproduce wang-su-2008 --only linear",
+    "inerter reproduce wang-su-2008 --only methods",
     "inerter reproduce wang-su-2008 --only rig",
     FITTED,
     SLOW,

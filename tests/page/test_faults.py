@@ -238,7 +238,7 @@ def _fits(visitor: Visitor, count: int) -> Any:
     return visitor.page.locator(".fit").first
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_path: Path) -> None:
     """First the reason and the likeliest cause, with a button each for what to do; then the device that it led to."""
     page = visitor.page
@@ -280,8 +280,7 @@ MARKUP = "<img src=//evil.example/x onerror=window.struck=1>"
 NAMES = [MARKUP, "\"'><svg onload=window.struck=1>", "\u202etxt.exe", "${window.struck=1}", "javascript:struck=1"]
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", sampled(NAMES, kept=2))
 def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, name: str) -> None:
     """Titles, layouts, elements, units, designs, files: what is written in them is shown, never run or asked for."""
     page = visitor.page
@@ -361,7 +360,7 @@ def _example(visitor: Visitor, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "other"), sampled(PAIRS, often=[("train", "half-car"), ("seat", "absorber")], kept=12)
+    ("first", "other"), sampled(PAIRS, often=[("train", "half-car"), ("seat", "absorber")], kept=3)
 )
 def test_an_example_shows_the_same_after_any_other(
     visitor: Visitor, visitors: Windows, served: Served, first: str, other: str

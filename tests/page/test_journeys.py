@@ -183,7 +183,7 @@ def test_every_example_opens(visitor: Visitor) -> None:
     assert opened >= 4
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_one_car_in_motion_after_another(visitor: Visitor) -> None:
     """What is drawn is never the motion of one with the parts of another, whichever answer comes first."""
     page = visitor.page

@@ -97,7 +97,7 @@ def _left(visitor: Visitor, session: Any) -> tuple[float, float]:
     return found["JSHeapUsedSize"], found["Nodes"]
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_heap_and_nodes_are_constant_over_a_thousand_steps_of_a_slider(visitor: Visitor) -> None:
     """Once the answers that are kept, and the steps to undo, are as many as they become."""
     page = visitor.page

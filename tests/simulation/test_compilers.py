@@ -75,7 +75,7 @@ def test_a_motion_does_not_depend_on_how_kernels_are_compiled(way: str) -> None:
         assert [event[0] for event in seen] == pytest.approx([event[0] for event in events], rel=1e-12)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_steps_are_the_same_without_what_the_compiler_does_not_document() -> None:
     """Of all that is compiled this is the least: the plain way takes long."""
     steps, plain = result(STEPS, "tuned"), result(STEPS, "plain")

@@ -72,7 +72,7 @@ def test_an_admittance_of_the_degree_is_found(network, degree):
     np.testing.assert_allclose(found.realise().admittance(S), network.admittance(S), rtol=3e-3)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_no_network_of_a_degree_is_closer_than_the_best_admittance():
     """To random admittances of higher degree, each network with its best values from many starts."""
     rng = np.random.default_rng(2)

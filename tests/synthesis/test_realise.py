@@ -118,11 +118,11 @@ def test_positive_real_functions_are_realised(family):
     assert max(degrees) == 6
 
 
-@pytest.mark.parametrize("seed", sampled(range(10), kept=1))
+@pytest.mark.parametrize("seed", sampled(range(40), kept=1))
 @pytest.mark.parametrize("family", FAMILIES)
 def test_many_positive_real_functions_are_realised(family, seed):
     rng = np.random.default_rng(100 + seed)
-    for _ in range(500):
+    for _ in range(125):
         n, d = family(rng)
         assert_realised(n, d, rng)
 

@@ -54,6 +54,7 @@ def test_independent_sources_have_gains_and_no_phase() -> None:
         assert np.isnan(curve["phase"]).all()
 
 
+@pytest.mark.campaign
 def test_a_sweep_tells_in_which_unit_it_is_written(client: TestClient) -> None:
     alone = {**DOCUMENT, "layouts": {"S1": "k | c"}}
     for asked in ({"indices": ["J1", "J3"]}, {"trade_off": ["J1", "J3"]}):  # a sweep leaves the trade-off out

@@ -74,6 +74,7 @@ def test_the_ranking_is_that_of_the_library_and_each_network_is_a_layout(client:
         assert row["value"] == pytest.approx(estimate.value, rel=1e-6), row["network"]
 
 
+@pytest.mark.campaign
 def test_the_front_of_two_indices_is_that_of_the_library_and_each_point_is_a_layout(client: TestClient) -> None:
     found, library = _result(client, SEARCHED, indices=["J1", "J3"]), _searched_by_library("J1", "J3")
     assert [one["index"] for one in found["searches"]] == ["J1", "J3"]

@@ -262,6 +262,7 @@ print(len(found[0]), np.abs(found[0]).max() > 100.0, np.array_equal(*found))
     assert session.python(program, tmp_path) == "1001 True True\n"
 
 
+@pytest.mark.campaign
 def test_a_bump_stop_is_met_in_compression_alone(session: Session, tmp_path: Path) -> None:
     """A car that is let down on it, and drawn up: on two springs, and on one, as closed forms say."""
     program = """

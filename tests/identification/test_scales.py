@@ -73,6 +73,7 @@ def test_both_errors_add_up_in_squares_and_a_single_end_moves_by_the_scale() -> 
     assert effects.widen(1, (0.0, 2.0), 1.0, (False, True)) == pytest.approx((0.0, 2.0 * 1.0196), rel=1e-4)
 
 
+@pytest.mark.campaign
 def test_values_follow_the_scales_that_are_given() -> None:
     record = it.VirtualRig(it.Inerter(56.6), sampling=200.0).run(it.cosine(2e-3, 3.0), duration=1.0)
     ideal = it.Inerter(it.free(1.0, 500.0, name="b"))

@@ -73,7 +73,7 @@ BEHIND_SHAFTS = {
 }
 
 
-@pytest.mark.parametrize("where", MOSTLY_STUCK)
+@pytest.mark.parametrize("where", sampled(MOSTLY_STUCK, list(MOSTLY_STUCK)[:1]))
 def test_a_sum_over_struts_is_no_surer_than_the_strut_that_sticks(where):
     """What the travel of one strut gains with a softer damper, the other loses: in the sum, but not in its error."""
     roughness, speed, quantities, network = MOSTLY_STUCK[where]

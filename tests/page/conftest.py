@@ -11,6 +11,14 @@ from browser import Served, Visitor, free_port, guard, launched_chromium
 from folders import EXAMPLES
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """All that takes a browser is a campaign, unless it is a marathon."""
+    for item in items:
+        if item.path.parent == Path(__file__).parent and item.get_closest_marker("marathon") is None:
+            item.add_marker(pytest.mark.campaign)
+
+
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
     with launched_chromium() as browser:

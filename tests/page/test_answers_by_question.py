@@ -265,7 +265,7 @@ def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> No
     page.wait_for_selector("td.best")
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_fit_that_is_withheld_says_so_first_and_hands_nothing_on(visitor: Visitor, tmp_path: Path) -> None:
     """The force of a ball screw, by a model without friction: as the command line begins, so does the page."""
     page = visitor.page

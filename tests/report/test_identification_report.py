@@ -266,6 +266,7 @@ def test_the_library_knows_steps_on_records_as_data_alone() -> None:
     assert [n.value for n in texts if isinstance(n.value, str) and re.search(words, n.value)] == []
 
 
+@pytest.mark.campaign
 def test_a_misfit_is_shown_where_it_is(found: IdentificationResult, tmp_path: Path) -> None:
     """One sentence in text, page and data, and one figure more."""
     pattern = Finding(

@@ -111,6 +111,7 @@ def test_results_survive_the_journal(study: Study) -> None:
     assert list(again.optima()) == list(result.optima())
 
 
+@pytest.mark.campaign
 def test_an_index_without_compiled_search(tmp_path: Path) -> None:
     """With a limit each network is searched by itself; none is left out."""
     elements = f'k = "120 kN/m"\nany = {{ network = 2, dampers_at_most = 1, springs_at_most = 0, {KINDS} }}'
@@ -163,6 +164,7 @@ def test_a_front_cut_short_resumes_to_the_same_bytes(traded: StudySearch, tmp_pa
     assert search_study(traded.study, folder, resume=True).computed == 0
 
 
+@pytest.mark.campaign
 def test_the_command_draws_the_front(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     load_text(tmp_path, text(TRADE))
     command = ["search", str(tmp_path / "study.toml"), "-o", str(tmp_path / "out"), "-j", "1"]

@@ -108,6 +108,7 @@ def test_what_is_tuned_to_one_speed_is_doubted_first(tmp_path):
     assert doubts == {True, False}
 
 
+@pytest.mark.campaign
 def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulates_is_replaced(tmp_path):
     asked = 'indices = ["J1"]\nbaseline = "S1"\nevaluate = ["{}"]'
     for method in ("statistical-linearisation", "expected-value"):

@@ -233,7 +233,7 @@ def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: 
     assert page.locator(".problem").count() == 0
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_the_page_is_there_while_kernels_are_compiled(
     visitors: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -298,7 +298,7 @@ def test_dragging_and_naming_by_mouse(visitor: Visitor) -> None:
     visitor.wait_for_text("k | c")
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     record = tmp_path / "fit.csv"

@@ -8,9 +8,11 @@ import math
 import re
 import shlex
 import shutil
+import tomllib
 from collections.abc import Callable, Iterator
 from inspect import signature
 from pathlib import Path
+from typing import Any
 
 import newcomer
 import numpy as np
@@ -352,3 +354,35 @@ def test_what_is_to_be_cited() -> None:
     assert all(text in software for text in (f"{{{version[1]}}}", f"{{{title[1]}}}", f"{{{year[1][:4]}}}"))
     for text in re.findall(r"^    (?:title|journal|volume|issue|year): \"?(.*?)\"?$", said, re.MULTILINE):
         assert f"{{{text}}}" in paper
+
+
+def project() -> dict[str, Any]:
+    found: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    return found
+
+
+def test_extras_say_what_they_bring() -> None:
+    rows = re.findall(
+        r"^\| (`\w+`.*) \| (.*) \|$", text_of("README.md").split("in extras")[1].split("##")[0], re.MULTILINE
+    )
+    named = {extra for row in rows for extra in re.findall(r"`(\w+)`", row[0])}
+    assert project()["optional-dependencies"].keys() - named == {"tdms", "mdf", "mat"}  # parts of `records`
+    assert named <= project()["optional-dependencies"].keys()
+
+
+def test_the_conda_recipe_is_of_this_version_and_needs_the_same() -> None:
+    """The version and bounds of `pyproject.toml`; matplotlib without its windows is called matplotlib-base there."""
+    recipe = (ROOT / "recipe" / "meta.yaml").read_text(encoding="utf-8")
+    assert f'version = "{it.__version__}"' in recipe
+    listed = recipe.split("  run:\n")[1].split("\n\n")[0]
+    needed = {line.strip().removeprefix("- ").replace("-base", "").replace(" ", "") for line in listed.splitlines()}
+    assert needed == {*project()["dependencies"], f"python{project()['requires-python']}"}
+
+
+def test_the_site_says_what_changed() -> None:
+    """The changelog is a page of it, whose links are to pages of the site."""
+    assert "../CHANGELOG.md" in text_of("changes.md")
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    linked = re.findall(r"\]\((docs/[^)#]*)", changes)
+    assert linked
+    assert not [link for link in linked if not (ROOT / link).is_file()]

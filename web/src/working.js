@@ -1,6 +1,6 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
-import { Lost, postNow } from "./api.js";
+import { Lost, Refusal, postNow } from "./api.js";
 import { freeIn, layoutsWith, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
@@ -253,22 +253,31 @@ async function look(store, api) {
   for (const job of work) {
     store.dispatch({ type: "worked", job: jobOf(job) });
     if (job.state === "done" && !store.get().work[job.id].result)
-      store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
+      await ifKept(store, job.id, async () => {
+        store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
+      });
   }
 }
 
+/** Asks about work, which goes from the page where the server has it no more, as when it was just forgotten.
+ * @param {Store} store @param {string} id @param {() => Promise<void>} ask */
+export const ifKept = (store, id, ask) => ask().catch((error) => {
+  if (!(error instanceof Refusal && error.status === 404)) throw error;
+  store.dispatch({ type: "dropped", id });
+});
+
 /** Continues work that was stopped. @param {Store} store @param {Api} api @param {string} id */
-export async function resume(store, api, id) {
+export const resume = (store, api, id) => ifKept(store, id, async () => {
   store.dispatch({ type: "worked", job: jobOf(await api.post(`work/${id}/resume`, {})) });
   void watch(store, api);
-}
+});
 
 /** @param {Store} store @param {Api} api @param {string} id */
-export async function stop(store, api, id) {
+export const stop = (store, api, id) => ifKept(store, id, async () => {
   const ended = ["done", "failed", "stopped"].includes(store.get().work[id]?.state);
   await api.remove(`work/${id}`);
   if (ended) store.dispatch({ type: "dropped", id });
-}
+});
 
 /** A job once it has ended, undefined if it was dropped. @param {Store} store @param {string} id
  * @returns {Promise<import("./state/store.js").Job | undefined>} */

@@ -1,10 +1,12 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { Refusal } from "../src/api.js";
 import { enter, isBeingRead, wronglyTyped } from "../src/entering.js";
 import { freeIn, layoutsWith, numbersOf, unchosenIn } from "../src/library.js";
 import { choicesOf, designOf, questions } from "../src/questions.js";
 import { after, empty, entryAt, textOf } from "../src/state/document.js";
 import { createStore, initial } from "../src/state/store.js";
+import { findWork, resume, stop } from "../src/working.js";
 import { partsOf } from "./reading.js";
 
 const NAMES = ["constructor", "toString", "valueOf", "hasOwnProperty", "isPrototypeOf", "__proto__"];
@@ -115,3 +117,19 @@ test("a layout called like a number does not become the baseline", () => {
   assert.equal(renamed.study.study?.baseline, "7");
   assert.equal(after(opened, { type: "layoutAdded", name: "S3" }).study.study?.baseline, undefined);
 });
+
+for (const [what, act] of /** @type {[string, (store: any, api: any) => Promise<void>][]} */ ([
+  ["stopped", (store, api) => stop(store, api, "gone")],
+  ["resumed", (store, api) => resume(store, api, "gone")],
+  ["looked at", (store, api) => findWork(store, api)],
+])) {
+  test(`work that the server has no more goes from the page where it is ${what}`, async () => {
+    const store = createStore();
+    store.dispatch({ type: "worked", job: /** @type {any} */ ({ id: "gone", kind: "sweep", state: "done" }) });
+    const refused = async () => { throw new Refusal(404, { sentence: "Unknown work." }); };
+    const list = { work: [{ id: "gone", kind: "sweep", state: "done" }] }; // of before it was forgotten
+    await act(store, { remove: refused, post: refused, get: (/** @type {string} */ path) =>
+      (path === "work" ? Promise.resolve(list) : refused()) });
+    assert.deepEqual(store.get().work, {});
+  });
+}

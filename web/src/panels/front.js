@@ -79,7 +79,7 @@ export function FrontResult({ store, api, job }) {
   };
   return html`<${FrontView} indices=${indices} fronts=${fronts} take=${take}
       baseline=${result.baseline ?? baselineOf(store.get().history.present).layout} />
-    <${Files} api=${api} job=${job} />`;
+    <${Files} store=${store} api=${api} job=${job} />`;
 }
 
 /** Fronts in a plot, with a card of the point that is looked at. Of three indices two are drawn, which can be chosen.

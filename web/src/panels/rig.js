@@ -145,6 +145,6 @@ function Fit({ store, api, job }) {
         : html`<p>${withheld(result)}</p>`}
       ${(result.offers ?? []).map((/** @type {Offer} */ offer) => html`<${Offered} key=${offer.label} store=${store}
         api=${api} result=${result} offer=${offer} />`)}
-      <${Files} api=${api} job=${job} />`}
+      <${Files} store=${store} api=${api} job=${job} />`}
   </section>`;
 }

@@ -89,7 +89,7 @@ export function SearchResult({ store, api, job }) {
   return html`${views.length > 1 && html`<${IndexChips} indices=${views} picked=${view} pick=${setView} />`}
     ${one ? html`<${Ranking} key=${view} state=${state} found=${found} one=${one} take=${take} />`
       : html`<${NetworkFront} found=${found} take=${take} />`}
-    ${job.result && html`<${Files} api=${api} job=${job} />`}`;
+    ${job.result && html`<${Files} store=${store} api=${api} job=${job} />`}`;
 }
 
 /** The front over all networks, and over those of fewer elements.

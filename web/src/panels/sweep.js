@@ -57,7 +57,7 @@ export function SweepResult({ store, api, job }) {
         <${Chip} on=${isRelative} set=${() => setRelative(true)}>relative to ${result.baseline}<//></div>
     <//>
     <p class="quiet">Click a point to take its design, with its value of ${of.words}, into the editor.</p>
-    <${Files} api=${api} job=${job} />`;
+    <${Files} store=${store} api=${api} job=${job} />`;
 }
 
 /** @param {number} value @param {Swept} of */

@@ -138,7 +138,7 @@ function RunResult({ store, api, job }) {
     </tr>`)}
   <//>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}
-  <${Files} api=${api} job=${job} />`;
+  <${Files} store=${store} api=${api} job=${job} />`;
 }
 
 /** The numbers that can be swept: elements, and then what else the study has. @param {State} state

@@ -52,6 +52,19 @@ def test_a_study_and_its_results_give_the_same_design(folder: Path, capsys: pyte
     assert np.array_equal(one["A"], it.named_system(best.design, form="descriptor").A)
 
 
+def test_of_a_study_with_conditions_the_vehicle_is_that_of_the_file(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    loads = "\n".join(f'[[conditions]]\nvehicle.sprung_mass = "{mass} kg"\n' for mass in (150, 250))
+    (folder / "loads.toml").write_text(f"{REAL}\n{loads}", encoding="utf-8")
+    assert call(["export", "loads.toml", "--to", "matlab", "--linear", "-o", "loads.mat"]) == 0
+    assert "those of the file itself, not of one of its conditions" in " ".join(capsys.readouterr().err.split())
+    assert call(["export", "real.toml", "--to", "matlab", "--linear", "-o", "real.mat"]) == 0
+    assert "conditions" not in capsys.readouterr().err
+    one, other = (scipy.io.loadmat(folder / f"{name}.mat") for name in ("loads", "real"))
+    assert np.array_equal(one["A"], other["A"])
+
+
 def _stiffer(path: Path) -> None:
     path.write_text(path.read_text(encoding="utf-8").replace('k = "120 kN/m"', 'k = "130 kN/m"'), encoding="utf-8")
 

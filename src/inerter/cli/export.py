@@ -63,3 +63,5 @@ def export(
         with single(path, by=_BY, inputs=design.inputs, force=force) as draft:
             draft.write_bytes(contents)
     say(f"{kind.description}: {path}")
+    if design.study.conditions:
+        say("the vehicle and road are those of the file itself, not of one of its conditions")

@@ -3,7 +3,10 @@ How much friction takes the gain away?
 ======================================
 
 Comfort of a real device over its friction, by statistical linearisation (line) and by simulation on random
-roads (points with their standard errors), against the best conventional strut.
+roads (points with two standard errors), against the best conventional strut. Where friction sticks for a part of
+the time, one damper represents it poorly, and the estimates say that they are inaccurate (dotted). At the end
+of the line the linearised friction sticks for good: the value is that of a rigid link, which the simulated device
+approaches only slowly.
 """
 
 import matplotlib.pyplot as plt
@@ -28,12 +31,14 @@ def real(friction):
 
 
 forces = np.linspace(5, 600, 30)
-line = [it.evaluate(real(f), comfort, it.StatisticalLinearisation()).value for f in forces]
+line = [it.evaluate(real(f), comfort, it.StatisticalLinearisation()) for f in forces]
+values, accurate = np.array([e.value for e in line]), np.array([e.status.ok for e in line])
 some = np.array([10.0, 150.0, 300.0, 450.0])
 found = [it.evaluate(real(f), comfort, it.ExpectedValue(realisations=8, seed=0)) for f in some]
 fig, ax = plt.subplots()
-ax.plot(forces, line, label="statistical linearisation")
-ax.errorbar(some, [e.value for e in found], [2 * e.standard_error for e in found], fmt="o", label="simulation")
+ax.plot(forces, np.where(accurate, values, np.nan), "C0", label="statistical linearisation")
+ax.plot(forces, values, "C0:", label="the same, where inaccurate")
+ax.errorbar(some, [e.value for e in found], [2 * e.standard_error for e in found], fmt="C1o", label="simulation")
 ax.axhline(it.evaluate(car(k | it.Damper(4981)), comfort, it.Norm()).value, color="black", linestyle="--", label="S1")
 ax.set(xlabel="Friction [N]", ylabel="J1 [m/s²]")
 ax.legend()

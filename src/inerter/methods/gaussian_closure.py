@@ -188,7 +188,7 @@ class Pattern:
         """The index of norms (..., outputs)."""
         return self.index.problem.definition.combine(norms, self.index.problem.weights)
 
-    def range(self, norms: Sequence[Array]) -> Array:
+    def spread(self, norms: Sequence[Array]) -> Array:
         """How far the index (designs,) can move if each output moves over its norms (several, designs, outputs)."""
         return self.combine(np.max(norms, axis=0)) - self.combine(np.min(norms, axis=0))
 
@@ -319,7 +319,7 @@ class GaussianClosure:
                 damping_there[:, i] = damper
                 found.append(free.index.output_norms(free.rows(points[designs[here]], damping_there)))
             with np.errstate(invalid="ignore"):
-                spread = free.range(found) / np.min(free.combine(np.array(found)), axis=0)
+                spread = free.spread(found) / np.min(free.combine(np.array(found)), axis=0)
             part = solved.share[here, i] * np.where(np.isnan(spread), np.inf, spread)
             unlike[here, i] = np.fmin(unlike[here, i], part)
         stuck = np.ones(unlike.shape, dtype=bool)
@@ -327,7 +327,7 @@ class GaussianClosure:
         if stuck.any():
             softer = np.where(stuck, damping / _SOFTER, damping)
             held, less = (free.index.output_norms(free.rows(points[designs], one)) for one in (damping, softer))
-            unlike[stuck & (free.range([held, less]) > PROMISE * free.combine(held))[:, None]] = np.inf
+            unlike[stuck & (free.spread([held, less]) > PROMISE * free.combine(held))[:, None]] = np.inf
         return np.asarray(unlike.sum(axis=1))
 
     def values(self, points: Array) -> Array:

@@ -417,7 +417,7 @@ def _starting_points(
 
 @lru_cache(maxsize=16)
 def quasi_random_points(count: int, size: int, seed: int) -> Array:
-    """Quasi-random points of a unit cube (a row each): an additive recurrence from a random start. They are only read.
+    """Quasi-random points of a unit cube (a row each), to be read only: an additive recurrence from a random start.
 
     Its steps are the powers of the inverse root of x**(size + 1) = x + 1 (M. Roberts, The unreasonable effectiveness of
     quasirandom sequences, 2018). SciPy's sequences are as good, but `scipy.stats` takes half a second to load.
@@ -426,7 +426,9 @@ def quasi_random_points(count: int, size: int, seed: int) -> Array:
     for _ in range(64):
         root = (1.0 + root) ** (1.0 / (size + 1))
     steps = root ** -np.arange(1.0, size + 1.0)
-    return np.asarray((np.random.default_rng(seed).random(size) + np.outer(np.arange(count), steps)) % 1.0)
+    points = np.asarray((np.random.default_rng(seed).random(size) + np.outer(np.arange(count), steps)) % 1.0)
+    points.flags.writeable = False  # they are kept
+    return points
 
 
 def _active_bounds(free: dict[str, Free], parameters: dict[str, float]) -> dict[str, str]:

@@ -120,7 +120,7 @@ def test_no_network_of_degree_two_is_better(symbol):
     assert best.estimate.value == pytest.approx(best.value, rel=1e-8)
 
 
-@pytest.mark.parametrize(("symbol", "degree"), sampled([("J1", 2), ("J1", 3), ("J3", 2), ("J3", 3)], kept=1))
+@pytest.mark.parametrize(("symbol", "degree"), sampled([("J1", 2), ("J1", 3), ("J3", 2), ("J3", 3)], kept=0))
 def test_no_network_of_five_elements_is_better(symbol, degree):
     index = INDICES[symbol]
     best = it.optimise_admittance(car(it.Spring(120e3) | ANY), index, degree)

@@ -38,16 +38,16 @@ def _layout(visitor: Visitor, name: str) -> None:
     visitor.page.locator(f"[aria-label=Layouts] .pick[title='{name}']").click()
 
 
-@pytest.mark.parametrize(
-    ("place", "text", "words"),
-    [
-        ("elements.k", "5 kg", ["5 kg", "N/m"]),
-        ("elements.k", "12 furlong", ["furlong", "N/m"]),
-        ("elements.c", "9 N", ["9 N", "N s/m"]),
-        ("vehicle.sprung_mass", "3 m", ["3 m", "kg"]),
-        ("elements.k", "x" * 250, []),
-    ],
-)
+WRONGLY_TYPED: list[tuple[str, str, list[str]]] = [
+    ("elements.k", "5 kg", ["5 kg", "N/m"]),
+    ("elements.k", "12 furlong", ["furlong", "N/m"]),
+    ("elements.c", "9 N", ["9 N", "N s/m"]),
+    ("vehicle.sprung_mass", "3 m", ["3 m", "kg"]),
+    ("elements.k", "x" * 250, []),
+]
+
+
+@pytest.mark.parametrize(("place", "text", "words"), sampled(WRONGLY_TYPED, often=WRONGLY_TYPED[:1], kept=1))
 def test_a_text_of_another_dimension_is_an_error_at_its_field(
     visitor: Visitor, place: str, text: str, words: list[str]
 ) -> None:
@@ -360,7 +360,7 @@ def _example(visitor: Visitor, name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("first", "other"), sampled(PAIRS, often=[("train", "half-car"), ("seat", "absorber")], kept=3)
+    ("first", "other"), sampled(PAIRS, often=[("train", "half-car"), ("seat", "absorber")], kept=1)
 )
 def test_an_example_shows_the_same_after_any_other(
     visitor: Visitor, visitors: Windows, served: Served, first: str, other: str

@@ -237,6 +237,7 @@ def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any,
 @pytest.mark.campaign
 def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
+    visitor.settled()  # nothing is dropped on a page that does not listen yet
     study = tmp_path / "dropped.toml"
     study.write_text(_two_struts())
     drop(visitor, study)

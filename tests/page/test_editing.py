@@ -214,3 +214,29 @@ def test_what_is_typed_right_after_a_click_belongs_to_the_layout_that_was_clicke
         page.evaluate(AT_ONCE, [layout, values[layout]])
         page.wait_for_function("text => document.getElementById('entry elements.c').title === text", arg=values[layout])
         assert {each: shown(each) for each in layouts} == values
+
+
+JUST_THEN = """([control, choose]) => {
+  const slider = document.getElementById("slider elements.c");
+  slider.value = Number(slider.value) + 1;
+  slider.dispatchEvent(new Event("input", { bubbles: true }));  // the page is to be drawn anew, in the next frame
+  const chosen = document.querySelector(control);
+  if (!choose) return chosen.click();
+  chosen.value = choose;
+  chosen.dispatchEvent(new Event("change", { bubbles: true }));
+}"""
+
+
+@pytest.mark.campaign
+def test_a_choice_counts_though_the_page_is_just_to_be_drawn_anew(visitor: Any) -> None:
+    page = visitor.page
+    visitor.settled()
+    method, varies = ".answers select[aria-label=Method]", "[data-place='elements.k'] input[type=checkbox]"
+    page.evaluate(JUST_THEN, [method, "statistical-linearisation"])
+    visitor.settled()
+    assert page.input_value(method) == "statistical-linearisation"
+    for free in (True, False):
+        page.evaluate(JUST_THEN, [varies, ""])
+        page.wait_for_selector(f"{varies}:{'checked' if free else 'not(:checked)'}")
+        visitor.drawn()
+        assert page.is_checked(varies) == free

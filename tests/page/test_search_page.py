@@ -97,3 +97,26 @@ def test_networks_of_a_search_are_taken_into_the_editor(
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
     job_row.get_by_label("Real inerters").get_by_role("button", name="Into the editor").first.click()
     shows(real, {"J3": real["value"]})
+
+
+@pytest.mark.campaign
+def test_a_number_of_elements_that_is_typed_stays_while_the_page_is_drawn_anew(
+    served: Served, visitors: Callable[..., Visitor], tmp_path: Path
+) -> None:
+    path = tmp_path / "searched.toml"
+    path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
+    visitor = visitors(served).visit()
+    page = visitor.page
+    visitor.open(path)
+    visitor.wait_for_text("k | any")
+    page.get_by_role("button", name="Search for the best network").click()
+    most = page.locator("form.begin").get_by_label("elements at most")
+    assert most.input_value() == "3"
+    most.focus()
+    page.keyboard.press("Control+A")
+    page.keyboard.type("2")
+    page.locator("[data-place='elements.k'] input[type=range]").evaluate(
+        "each => { each.value = Number(each.value) + 1; each.dispatchEvent(new Event('input', { bubbles: true })); }"
+    )
+    page.wait_for_function("() => document.getElementById('entry elements.k').title !== '120 kN/m'")
+    assert most.input_value() == "2"

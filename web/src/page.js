@@ -66,9 +66,15 @@ export function Page({ store, api, enter }) {
 
 const ACTS = ["keydown", "click", "change", "submit"];
 
+/** Whether an event is about a control that shows what was chosen before anybody is told; to draw it takes that back.
+ * @param {Event} event */
+const holdsChoice = ({ target }) =>
+  target instanceof Element && target.matches("select, input[type=checkbox], input[type=radio]");
+
 /** Draws the page whenever the state is another one, at most once a frame, so that sixty steps of a slider draw what a
  * screen can show. What a key or a button does is about what is drawn: what is due comes before it, however late the
- * frame is; and what it did is drawn after it at once, before anything is typed into what is there no longer.
+ * frame is, but for a choice that a control already holds; and what it did is drawn after it at once, before anything
+ * is typed into what is there no longer.
  * @param {Store} store @param {() => void} draw */
 export function keepDrawing(store, draw) {
   let due = true;
@@ -77,7 +83,10 @@ export function keepDrawing(store, draw) {
     due = false;
     draw();
   };
-  for (const act of ACTS) for (const capture of [true, false]) addEventListener(act, now, { capture });
+  for (const act of ACTS) {
+    addEventListener(act, (event) => holdsChoice(event) || now(), { capture: true });
+    addEventListener(act, now);
+  }
   store.subscribe(() => {
     if (!due) requestAnimationFrame(now);
     due = true;

@@ -245,12 +245,15 @@ async function watch(store, api) {
   }
 }
 
-/** @param {Store} store @param {Api} api */
+/** Brings what the server says of its work; what began or was forgotten meanwhile it may not know.
+ * @param {Store} store @param {Api} api */
 async function look(store, api) {
+  const before = Object.keys(store.get().work);
   const { work } = await api.get("work");
   const here = new Set(work.map((/** @type {any} */ { id }) => id));
-  for (const id of Object.keys(store.get().work)) if (!here.has(id)) store.dispatch({ type: "dropped", id });
+  for (const id of before) if (!here.has(id)) store.dispatch({ type: "dropped", id });
   for (const job of work) {
+    if (before.includes(job.id) && !store.get().work[job.id]) continue;
     store.dispatch({ type: "worked", job: jobOf(job) });
     if (job.state === "done" && !store.get().work[job.id].result)
       await ifKept(store, job.id, async () => {

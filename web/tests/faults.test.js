@@ -133,3 +133,15 @@ for (const [what, act] of /** @type {[string, (store: any, api: any) => Promise<
     assert.deepEqual(store.get().work, {});
   });
 }
+
+test("a look at the work brings back nothing that was forgotten meanwhile, and drops nothing that began", async () => {
+  const store = createStore();
+  const job = (/** @type {string} */ id, state = "stopped") => /** @type {any} */ ({ id, kind: "sweep", state });
+  store.dispatch({ type: "worked", job: job("forgotten") });
+  await findWork(store, /** @type {any} */ ({ get: async () => {
+    store.dispatch({ type: "dropped", id: "forgotten" });
+    store.dispatch({ type: "worked", job: job("begun") });
+    return { work: [job("forgotten"), job("other")] };
+  } }));
+  assert.deepEqual(Object.keys(store.get().work), ["begun", "other"]);
+});

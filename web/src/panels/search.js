@@ -1,8 +1,9 @@
 // A search for the best network: rankings, which fill while it goes on, the best for each number of elements, the front
 // over all networks, and real inerters; each network can be taken into the editor.
 
-import { IndexChips, Select, Table, textHandler, useChoice } from "../parts/controls.js";
+import { IndexChips, Select, Table, useChoice } from "../parts/controls.js";
 import { Doubts, isOk } from "../parts/doubts.js";
+import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { searchedLayouts } from "../library.js";
 import { Plot } from "../plot.js";
@@ -62,12 +63,12 @@ function FreeNetwork({ store, name }) {
   return html`<fieldset class="row"><legend class="visually-hidden">${name}</legend>${keys.map((one) => {
     const { key, type, description, minimum, maximum, default: usual } = one;
     const value = entry[key] ?? usual;
-    const number = textHandler((text) => place(key, text === "" ? undefined : Number(text)));
+    const number = (/** @type {string} */ text) => place(key, text === "" ? undefined : Number(text));
     const switched = (/** @type {any} */ { currentTarget }) => place(key, currentTarget.checked);
     return html`<label key=${key} title=${description}>${key === "network" ? "elements at most"
       : key.replaceAll("_", " ")} ${type === "boolean" ? html`<input type="checkbox" checked=${value}
-        onChange=${switched} />` : html`<input type="number" class="short" min=${minimum} max=${maximum}
-        value=${value} placeholder="any" onChange=${number} />`}</label>`;
+        onChange=${switched} />` : html`<${Field} type="number" class="short" min=${minimum} max=${maximum}
+        text=${value} placeholder="any" done=${number} />`}</label>`;
   })}</fieldset>`;
 }
 

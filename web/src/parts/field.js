@@ -3,7 +3,7 @@ import { textHandler } from "./controls.js";
 import { html, useState } from "./html.js";
 
 /** What is being typed stays while answers arrive and the page is drawn anew.
- * @param {{text: string, done: (text: string) => void, [attribute: string]: unknown}} props */
+ * @param {{text: string | number | undefined, done: (text: string) => void, [attribute: string]: unknown}} props */
 export function Field({ text, done, ...attributes }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
   const finish = textHandler((entered) => {

@@ -142,6 +142,19 @@ class Visitor:
         return {index: float(value) for index, value in cells}
 
 
+_STEP = """() => {
+  const slider = document.getElementById("slider elements.k");
+  slider.value = Number(slider.value) + 1;
+  slider.dispatchEvent(new Event("input", { bubbles: true }));
+  %s
+}"""
+
+
+def step_slider_and(visitor: Visitor, act: str = "") -> None:
+    """Move the slider of k by a step and, before the page is drawn anew, act as a line of JavaScript says."""
+    visitor.page.evaluate(_STEP % act)
+
+
 def free_port() -> int:
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))

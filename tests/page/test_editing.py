@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import pytest
+from browser import Visitor, step_slider_and
 
 import inerter as it
 
@@ -16,7 +16,6 @@ def _value(study: Path | str, layout: str, index: str) -> float:
     return float(it.evaluate(loaded.design(layout), loaded.index(index), it.Norm()).value)
 
 
-@pytest.mark.campaign
 def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
@@ -44,7 +43,6 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
     page.wait_for_function("text => document.getElementById('entry elements.c').title === text", arg=before)
 
 
-@pytest.mark.campaign
 def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     visitor.settled()
@@ -70,7 +68,6 @@ def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_p
     assert found["J3"] == _value(path, layout, "J3")
 
 
-@pytest.mark.campaign
 def test_what_is_pressed_is_about_the_newest_however_late_the_screen_is(visitor: Any) -> None:
     page = visitor.page
     visitor.settled()
@@ -81,7 +78,6 @@ def test_what_is_pressed_is_about_the_newest_however_late_the_screen_is(visitor:
     assert set(asked.value.post_data_json["study"]["elements"]["k"]) == {"from", "to"}
 
 
-@pytest.mark.campaign
 def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     before = visitor.text
@@ -109,7 +105,6 @@ def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tm
     assert visitor.text == before
 
 
-@pytest.mark.campaign
 def test_names_with_markup_are_text(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
     name = "<img src=x onerror=alert(1)>"
@@ -128,7 +123,6 @@ def test_names_with_markup_are_text(visitor: Any, tmp_path: Path) -> None:
     assert page.locator("#page script").count() == 0
 
 
-@pytest.mark.campaign
 def test_a_number_is_dragged_and_home_is_its_best_value(visitor: Any) -> None:
     page = visitor.page
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
@@ -165,7 +159,6 @@ def test_a_number_is_dragged_and_home_is_its_best_value(visitor: Any) -> None:
     page.wait_for_selector("[id='slider elements.b'].marked", state="detached")  # it was the best of another study
 
 
-@pytest.mark.campaign
 def test_an_element_is_marked_wherever_it_is(visitor: Any) -> None:
     page = visitor.page
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
@@ -197,7 +190,6 @@ AT_ONCE = """([layout, text]) => {
 }"""
 
 
-@pytest.mark.campaign
 def test_what_is_typed_right_after_a_click_belongs_to_the_layout_that_was_clicked(visitor: Any) -> None:
     page = visitor.page
     visitor.settled()
@@ -216,27 +208,13 @@ def test_what_is_typed_right_after_a_click_belongs_to_the_layout_that_was_clicke
         assert {each: shown(each) for each in layouts} == values
 
 
-JUST_THEN = """([control, choose]) => {
-  const slider = document.getElementById("slider elements.c");
-  slider.value = Number(slider.value) + 1;
-  slider.dispatchEvent(new Event("input", { bubbles: true }));  // the page is to be drawn anew, in the next frame
-  const chosen = document.querySelector(control);
-  if (!choose) return chosen.click();
-  chosen.value = choose;
-  chosen.dispatchEvent(new Event("change", { bubbles: true }));
-}"""
+CHOOSE = """const select = document.querySelector(".answers select[aria-label=Method]");
+  select.value = "statistical-linearisation";
+  select.dispatchEvent(new Event("change", { bubbles: true }));"""
 
 
-@pytest.mark.campaign
-def test_a_choice_counts_though_the_page_is_just_to_be_drawn_anew(visitor: Any) -> None:
-    page = visitor.page
+def test_a_method_that_is_chosen_just_before_the_page_is_drawn_anew_counts(visitor: Visitor) -> None:
     visitor.settled()
-    method, varies = ".answers select[aria-label=Method]", "[data-place='elements.k'] input[type=checkbox]"
-    page.evaluate(JUST_THEN, [method, "statistical-linearisation"])
+    step_slider_and(visitor, CHOOSE)
     visitor.settled()
-    assert page.input_value(method) == "statistical-linearisation"
-    for free in (True, False):
-        page.evaluate(JUST_THEN, [varies, ""])
-        page.wait_for_selector(f"{varies}:{'checked' if free else 'not(:checked)'}")
-        visitor.drawn()
-        assert page.is_checked(varies) == free
+    assert visitor.page.input_value(".answers select[aria-label=Method]") == "statistical-linearisation"

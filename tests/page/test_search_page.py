@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Served, Visitor
+from browser import Served, Visitor, step_slider_and
 from study_text import PAPER_CAR, study_text
 
 ELEMENTS = (
@@ -34,20 +33,22 @@ def searches(served: Served) -> list[dict[str, Any]]:
     return [job for job in json.loads(served.get("work"))["work"] if job["kind"] == "search"]
 
 
-@pytest.mark.campaign
-def test_networks_of_a_search_are_taken_into_the_editor(
-    served: Served, visitors: Callable[..., Visitor], tmp_path: Path
-) -> None:
+@pytest.fixture
+def searching(visitor: Visitor, tmp_path: Path) -> Visitor:
+    """A window with a study that has a free network."""
+    path = tmp_path / "searched.toml"
+    path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
+    visitor.open(path)
+    visitor.wait_for_text("k | any")
+    return visitor
+
+
+def test_networks_of_a_search_are_taken_into_the_editor(served: Served, searching: Visitor) -> None:
     """Of the front over networks, of a ranking, of its frontier and with real inerters.
 
     The layout of each replaces the one that was searched, and the page then shows its indices.
     """
-    path = tmp_path / "searched.toml"
-    path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
-    visitor = visitors(served).visit()
-    page = visitor.page
-    visitor.open(path)
-    visitor.wait_for_text("k | any")
+    page = searching.page
     page.wait_for_selector(".answers[data-being=current]")
     assert page.locator(".problems, .element.unknown").count() == 0
     for tab in ("history", "margins", "tolerance"):
@@ -74,7 +75,7 @@ def test_networks_of_a_search_are_taken_into_the_editor(
     front = max(found["front"]["fronts"], key=lambda one: one["elements"])["points"]
 
     def shows(row: Any, values: dict[str, float]) -> None:
-        visitor.wait_for_text(row["entry"])
+        searching.wait_for_text(row["entry"])
         page.wait_for_function(SHOWS, arg=values)
 
     assert job_row.locator("circle.point").count() == len(front)
@@ -99,24 +100,19 @@ def test_networks_of_a_search_are_taken_into_the_editor(
     shows(real, {"J3": real["value"]})
 
 
-@pytest.mark.campaign
-def test_a_number_of_elements_that_is_typed_stays_while_the_page_is_drawn_anew(
-    served: Served, visitors: Callable[..., Visitor], tmp_path: Path
-) -> None:
-    path = tmp_path / "searched.toml"
-    path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
-    visitor = visitors(served).visit()
-    page = visitor.page
-    visitor.open(path)
-    visitor.wait_for_text("k | any")
+def test_how_many_elements_and_whether_bridges_stay_while_the_page_is_drawn_anew(searching: Visitor) -> None:
+    page = searching.page
     page.get_by_role("button", name="Search for the best network").click()
-    most = page.locator("form.begin").get_by_label("elements at most")
-    assert most.input_value() == "3"
+    form = page.locator("form.begin")
+    most, bridges = form.get_by_label("elements at most"), form.get_by_label("bridges")
+    assert (most.input_value(), bridges.is_checked()) == ("3", False)
     most.focus()
     page.keyboard.press("Control+A")
     page.keyboard.type("2")
-    page.locator("[data-place='elements.k'] input[type=range]").evaluate(
-        "each => { each.value = Number(each.value) + 1; each.dispatchEvent(new Event('input', { bubbles: true })); }"
-    )
+    step_slider_and(searching)
     page.wait_for_function("() => document.getElementById('entry elements.k').title !== '120 kN/m'")
     assert most.input_value() == "2"
+    page.keyboard.press("Enter")
+    step_slider_and(searching, "document.querySelector('form.begin input[type=checkbox]:not([name])').click();")
+    searching.settled()
+    assert (most.input_value(), bridges.is_checked()) == ("2", True)

@@ -66,7 +66,7 @@ export function Page({ store, api, enter }) {
 
 const ACTS = ["keydown", "click", "change", "submit"];
 
-/** Whether an event is about a control that shows what was chosen before anybody is told; to draw it takes that back.
+/** Whether an event is about a control that shows what was chosen before its change is told; a draw takes that back.
  * @param {Event} event */
 const holdsChoice = ({ target }) =>
   target instanceof Element && target.matches("select, input[type=checkbox], input[type=radio]");
@@ -85,7 +85,7 @@ export function keepDrawing(store, draw) {
   };
   for (const act of ACTS) {
     addEventListener(act, (event) => holdsChoice(event) || now(), { capture: true });
-    addEventListener(act, now);
+    addEventListener(act, (event) => (holdsChoice(event) && act !== "change") || now());
   }
   store.subscribe(() => {
     if (!due) requestAnimationFrame(now);

@@ -257,14 +257,15 @@ async function look(store, api) {
     store.dispatch({ type: "worked", job: jobOf(job) });
     if (job.state === "done" && !store.get().work[job.id].result)
       await ifKept(store, job.id, async () => {
-        store.dispatch({ type: "worked", job: { id: job.id, result: await api.get(`work/${job.id}/result`) } });
+        const result = await api.get(`work/${job.id}/result`);
+        if (store.get().work[job.id]) store.dispatch({ type: "worked", job: { id: job.id, result } });
       });
   }
 }
 
 /** Asks about work, which goes from the page where the server has it no more, as when it was just forgotten.
  * @param {Store} store @param {string} id @param {() => Promise<void>} ask */
-export const ifKept = (store, id, ask) => ask().catch((error) => {
+const ifKept = (store, id, ask) => ask().catch((error) => {
   if (!(error instanceof Refusal && error.status === 404)) throw error;
   store.dispatch({ type: "dropped", id });
 });

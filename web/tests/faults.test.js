@@ -138,10 +138,11 @@ test("a look at the work brings back nothing that was forgotten meanwhile, and d
   const store = createStore();
   const job = (/** @type {string} */ id, state = "stopped") => /** @type {any} */ ({ id, kind: "sweep", state });
   store.dispatch({ type: "worked", job: job("forgotten") });
-  await findWork(store, /** @type {any} */ ({ get: async () => {
+  await findWork(store, /** @type {any} */ ({ get: async (/** @type {string} */ path) => {
+    if (path === "work/done/result") return store.dispatch({ type: "dropped", id: "done" }); // just as its result came
     store.dispatch({ type: "dropped", id: "forgotten" });
     store.dispatch({ type: "worked", job: job("begun") });
-    return { work: [job("forgotten"), job("other")] };
+    return { work: [job("forgotten"), job("done", "done"), job("other")] };
   } }));
   assert.deepEqual(Object.keys(store.get().work), ["begun", "other"]);
 });

@@ -99,7 +99,6 @@ def test_nothing_of_one_study_stands_under_another(first: str, visitor: Visitor)
     assert [each for each in found if each] == []
 
 
-@pytest.mark.campaign
 def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
     """The optimum, a budget and a tolerance that were told of the seat: nothing of them under the train."""
     page = visitor.page
@@ -123,7 +122,6 @@ def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
         page.wait_for_selector("table[data-scatter]")  # and again under the seat, since it is that of it
 
 
-@pytest.mark.campaign
 def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visitor) -> None:
     page = visitor.page
     _opened(visitor, "seat")
@@ -207,7 +205,6 @@ def test_nothing_is_silent_for_two_seconds(what: str, visitor: Visitor) -> None:
         assert waiting
 
 
-@pytest.mark.campaign
 def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -231,7 +228,6 @@ def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor
     assert page.locator(".vehicle canvas").count() == 0
 
 
-@pytest.mark.campaign
 def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> None:
     """The best values of a train are not found while one waits: it says so beside that it is open, until they are."""
     page = visitor.page
@@ -309,7 +305,6 @@ STICKING = study_text(
 )
 
 
-@pytest.mark.campaign
 def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_path: Path) -> None:
     """Answers, a comparison, a budget and the scatter of a friction: each begins with what it is worth."""
     page = visitor.page

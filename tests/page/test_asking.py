@@ -106,7 +106,6 @@ def test_every_number_of_an_example_can_be_changed(name: str, visitor: Visitor) 
         assert 1.0 < float(after) / float(number) < 1.05, (place, before, after)
 
 
-@pytest.mark.campaign
 def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> None:
     """What has no unit, or is negative: the study that is downloaded has it, and the page has its numbers."""
     page = visitor.page
@@ -135,7 +134,6 @@ def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> No
         assert it.evaluate(study.design(layout), study.index(index), it.Norm()).value == value
 
 
-@pytest.mark.campaign
 def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) -> None:
     """Of a study in which nothing was free, and which names no method."""
     page = visitor.page
@@ -152,7 +150,6 @@ def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) ->
     assert tomllib.loads(path.read_text())["study"]["optimise"] == "norm"
 
 
-@pytest.mark.campaign
 def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     text = _two_struts(f'{ONE_INDEX}\noptimise = "norm"', c='{ from = "100 N s/m", to = "100 kN s/m" }')
@@ -190,7 +187,6 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
 
 
-@pytest.mark.campaign
 def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor, tmp_path: Path) -> None:
     """However long the text of a network is, all of it is seen, and the mark is under what is wrong."""
     page = visitor.page
@@ -211,7 +207,6 @@ def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor, tmp_path: Pa
     assert seen["lines"] > 5
 
 
-@pytest.mark.campaign
 def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any, tmp_path: Path) -> None:
     page = visitor.page
     page.click("#tab-history")
@@ -234,7 +229,6 @@ def test_tables_and_link_hold_what_is_looked_at(visitor: Visitor, visitors: Any,
     assert other.values() == shown
 
 
-@pytest.mark.campaign
 def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     visitor.settled()  # nothing is dropped on a page that does not listen yet
@@ -270,7 +264,6 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     page.wait_for_selector(".records .plot", state="detached")
 
 
-@pytest.mark.campaign
 def test_results_of_a_simulation_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
     """A vehicle is opened as a study of it, a device of a rig joins the study that is open; nothing is overwritten."""
     page = visitor.page
@@ -336,7 +329,6 @@ def test_the_keyboard_reaches_all_and_is_nowhere_trapped(backwards: bool, visito
         assert [step["what"] for step in steps if step["what"] and not (step["seen"] and step["inside"])] == [], tab
 
 
-@pytest.mark.campaign
 def test_escape_closes_a_menu_and_stays_at_it(visitor: Visitor) -> None:
     page = visitor.page
     for summary in (
@@ -355,7 +347,6 @@ def test_escape_closes_a_menu_and_stays_at_it(visitor: Visitor) -> None:
         page.keyboard.press("Shift+Tab")
 
 
-@pytest.mark.campaign
 def test_a_drawing_of_many_elements_is_laid_across_the_page(visitors: Callable[..., Visitor], served: Any) -> None:
     """All of it is then seen at once, where the window is wide."""
     visitor = visitors(served).visit()
@@ -372,7 +363,6 @@ def test_a_drawing_of_many_elements_is_laid_across_the_page(visitors: Callable[.
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["study"]["title"]
 
 
-@pytest.mark.campaign
 def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     """By the method that the page judges by: how much friction takes all of what an inerter brings."""
     page = visitor.page
@@ -399,7 +389,6 @@ def test_a_budget_is_that_of_python(visitor: Visitor, tmp_path: Path) -> None:
     assert f"At f = {found.value:.5g} N, S3" in page.inner_text(".budget [role=status]")
 
 
-@pytest.mark.campaign
 def test_a_report_is_made_and_downloaded(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     _open(visitor, _two_struts(), tmp_path)

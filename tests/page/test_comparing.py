@@ -120,7 +120,6 @@ def test_designs_stand_side_by_side(way: str, count: int, visitor: Visitor, tmp_
     _compared(visitor, ["S3", *(name for name in names[:-1] if name != "S3")])
 
 
-@pytest.mark.campaign
 def test_kept_designs_of_other_studies_are_compared_with_what_tells_them_apart(
     visitor: Visitor, tmp_path: Path
 ) -> None:

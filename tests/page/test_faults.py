@@ -77,7 +77,6 @@ def test_a_quantity_in_another_unit_is_taken_over(visitor: Visitor) -> None:
     page.wait_for_selector("[id='entry elements.k'][title='685.22 lbf/inch']")
 
 
-@pytest.mark.campaign
 def test_sizes_that_nothing_has_are_answered_at_once(visitor: Visitor) -> None:
     """Whatever number is typed, no answer takes long, and nothing of the page stands still or fails."""
     page = visitor.page
@@ -102,7 +101,6 @@ ODD = study_text(
 )
 
 
-@pytest.mark.campaign
 def test_names_of_the_language_are_ordinary_names(visitor: Visitor, tmp_path: Path) -> None:
     _open(visitor, tmp_path, "odd", ODD)
     page = visitor.page
@@ -138,7 +136,6 @@ REFERENCES = study_text(
 REFERENCES += '[indices.stroke]\nkind = "element-stroke"\nelement = "k"\n'
 
 
-@pytest.mark.campaign
 def test_an_element_is_renamed_wherever_the_study_names_it(visitor: Visitor, tmp_path: Path) -> None:
     _open(visitor, tmp_path, "references", REFERENCES)
     page, before = visitor.page, visitor.values()
@@ -152,7 +149,6 @@ def test_an_element_is_renamed_wherever_the_study_names_it(visitor: Visitor, tmp
     assert 'main_spring = "10 %"' in saved or "main_spring = 0.1" in saved
 
 
-@pytest.mark.campaign
 def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -169,7 +165,6 @@ def test_a_name_that_is_taken_is_refused_in_a_sentence(visitor: Visitor) -> None
     assert page.locator("[aria-label=Layouts] .pick[title='S1']").count() == 1
 
 
-@pytest.mark.campaign
 def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Visitor) -> None:
     page = visitor.page
     _layout(visitor, "S2")
@@ -187,7 +182,6 @@ def test_a_wrong_name_of_one_layout_leaves_the_others_their_answers(visitor: Vis
     assert page.inner_text(".problems").count("layouts.S3e") == 1
 
 
-@pytest.mark.campaign
 def test_a_file_that_another_program_changes_is_told_and_read_again(
     serve: Callable[..., Served], visitors: Callable[..., Visitor], tmp_path: Path
 ) -> None:
@@ -217,7 +211,6 @@ def test_a_file_that_another_program_changes_is_told_and_read_again(
     page.wait_for_selector(".notice:has-text('removed or renamed')")
 
 
-@pytest.mark.campaign
 def test_work_that_is_done_says_nothing_of_a_step(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -375,7 +368,6 @@ def test_an_example_shows_the_same_after_any_other(
     assert not [text for text in notices if f"{first}.toml" in text]
 
 
-@pytest.mark.campaign
 def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visitor: Visitor) -> None:
     """Values in the middle of their bounds: the warning stands until they are chosen, and no per cent before."""
     page = visitor.page
@@ -395,7 +387,6 @@ def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visi
     assert "%" in page.inner_text(".answers table")
 
 
-@pytest.mark.campaign
 def test_a_tolerance_that_the_method_neglects_has_no_number(visitor: Visitor) -> None:
     page = visitor.page
     _example(visitor, "ball_screw")

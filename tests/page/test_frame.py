@@ -20,7 +20,6 @@ SCROLLED = """() => {
 }"""
 
 
-@pytest.mark.campaign
 @pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
 def test_the_page_is_not_scrolled(visitor: Visitor, size: tuple[int, int]) -> None:
     page = visitor.page
@@ -70,7 +69,6 @@ def test_the_verdict_is_that_of_the_server_with_all_its_caveats(visitor: Visitor
     page.locator("#verdict .stale").wait_for()
 
 
-@pytest.mark.campaign
 def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     served: Served, visitors: Callable[..., Visitor]
 ) -> None:
@@ -98,7 +96,6 @@ def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     stale.wait_for()
 
 
-@pytest.mark.campaign
 def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()
@@ -135,7 +132,6 @@ def _number(page: Any) -> float:
     return float(str(page.get_attribute("[id='entry elements.c']", "title")).partition(" ")[0])
 
 
-@pytest.mark.campaign
 def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors: Callable[..., Visitor]) -> None:
     """The first screen has a card for each example; a study that was left is offered the next time."""
     visitor = visitors(serve(None)).visit()
@@ -160,7 +156,6 @@ def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors
     other.wait_for_function("text => document.querySelector('input.title')?.value === text", arg=opened)
 
 
-@pytest.mark.campaign
 def test_a_record_without_a_study_is_shown_beside_a_quarter_car(
     serve: Callable[..., Served], visitors: Callable[..., Visitor], tmp_path: Path
 ) -> None:

@@ -124,12 +124,10 @@ def _built_compared_and_undone(
     return optimum
 
 
-@pytest.mark.campaign
 def test_a_newcomer_builds_optimises_and_undoes_by_keyboard(visitor: Visitor, tmp_path: Path) -> None:
     assert _built_compared_and_undone(visitor, tmp_path, _by_keyboard, _type)
 
 
-@pytest.mark.campaign
 def test_a_newcomer_builds_optimises_undoes_shares_and_runs(visitor: Visitor, visitors: Any, tmp_path: Path) -> None:
     page, served = visitor.page, visitor.served
     optimum = _built_compared_and_undone(visitor, tmp_path, _by_mouse, _press)
@@ -151,7 +149,6 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(visitor: Visitor, vi
     assert {row["index"]: row["value"] for row in _run(fixed, tmp_path / "fixed")} == optimum
 
 
-@pytest.mark.campaign
 def test_every_example_opens(visitor: Visitor) -> None:
     """One after another in one window, each in place of the one before; of a simulation its vehicle or its device."""
     page = visitor.page
@@ -197,7 +194,6 @@ def test_one_car_in_motion_after_another(visitor: Visitor) -> None:
     assert visitor.faults == []
 
 
-@pytest.mark.campaign
 def test_a_long_sweep_is_stopped_and_survives_a_reload(visitor: Visitor) -> None:
     page = visitor.page
     page.click("#tab-work")
@@ -213,7 +209,6 @@ def test_a_long_sweep_is_stopped_and_survives_a_reload(visitor: Visitor) -> None
     stopped.wait_for(state="detached")
 
 
-@pytest.mark.campaign
 def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: Any) -> None:
     served = serve(EXAMPLES / "quarter-car.toml")
     visitor = visitors(served).visit()
@@ -276,7 +271,6 @@ def test_what_is_typed_stays_while_answers_arrive(visitor: Visitor) -> None:
         assert page.input_value(field) == "12"
 
 
-@pytest.mark.campaign
 def test_dragging_and_naming_by_mouse(visitor: Visitor) -> None:
     page = visitor.page
     page.fill("#network-text", "k | c | b")
@@ -336,7 +330,6 @@ def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Pa
     page.wait_for_selector(".fit", state="detached")
 
 
-@pytest.mark.campaign
 def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
     shown = visitor.values()
     table = visitor.download("Indices (CSV)", tmp_path)
@@ -347,7 +340,6 @@ def test_downloads_hold_what_is_shown(visitor: Visitor, tmp_path: Path) -> None:
     assert visitor.download("Network (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.campaign
 def test_a_design_is_exported(visitor: Visitor, tmp_path: Path) -> None:
     """Every kind of file that the library has; what has friction only on purpose, else a message says why."""
     page = visitor.page
@@ -378,7 +370,6 @@ def test_a_design_is_exported(visitor: Visitor, tmp_path: Path) -> None:
     page.wait_for_selector(".notice", state="detached")
 
 
-@pytest.mark.campaign
 def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
     """Of every index of the study, whatever it is called: what the menu asks for, the server has."""
     study = tmp_path / "study.toml"
@@ -396,7 +387,6 @@ def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
     assert visitor.download("Response (PNG)", tmp_path).read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.campaign
 def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
     page = visitor.page
     asked: list[dict[str, Any]] = []
@@ -428,7 +418,6 @@ def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
     page.wait_for_selector("table[data-scatter]")
 
 
-@pytest.mark.campaign
 def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
     page = visitor.page
     page.click("#tab-work")
@@ -440,7 +429,6 @@ def test_a_number_beyond_elements_is_swept(visitor: Visitor) -> None:
     page.wait_for_selector(".job[data-state=done] .plot .drawn", timeout=120_000)
 
 
-@pytest.mark.campaign
 def test_a_point_of_a_front_is_taken_into_the_editor(visitor: Visitor) -> None:
     """Its values become those of the layout, and the page then shows the indices of the point in all digits."""
     page = visitor.page
@@ -460,7 +448,6 @@ def test_a_point_of_a_front_is_taken_into_the_editor(visitor: Visitor) -> None:
     wait_until(lambda: {index: visitor.values()[index] for index in point["values"]} == point["values"])
 
 
-@pytest.mark.campaign
 def test_limits_stand_in_the_answers(visitor: Visitor) -> None:
     visitor.open(EXAMPLES / "limits.toml")
     visitor.wait_for_text("k | c - b")
@@ -473,7 +460,6 @@ def test_limits_stand_in_the_answers(visitor: Visitor) -> None:
     assert visitor.page.locator(".limits .bad").last.inner_text().startswith("broken: static stiffness")
 
 
-@pytest.mark.campaign
 def test_what_the_keyboard_enters_is_typed_over(visitor: Visitor) -> None:
     """A value of more digits than are shown: whoever comes by Tab has all of it chosen, with all its digits."""
     page = visitor.page

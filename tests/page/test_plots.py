@@ -76,7 +76,6 @@ def test_a_response_that_is_drawn_is_that_of_the_answer(log: bool, served: Serve
         assert ((up[0] <= gain) & (gain <= up[1])).all()
 
 
-@pytest.mark.campaign
 def test_phases_stand_beside_gains_and_outputs_have_names(served: Served, visitors: Any) -> None:
     visitor = visitors(served).visit()
     page = visitor.page
@@ -104,7 +103,6 @@ def test_phases_stand_beside_gains_and_outputs_have_names(served: Served, visito
     assert heads[0] == heads[1]
 
 
-@pytest.mark.campaign
 def test_a_plot_is_read_by_keyboard_and_as_a_table(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
@@ -141,7 +139,6 @@ def _saved(visitor: Visitor, kind: str, into: Path) -> Path:
     return path
 
 
-@pytest.mark.campaign
 def test_a_plot_is_saved_as_picture_and_numbers(served: Served, visitors: Any, tmp_path: Path) -> None:
     visitor = visitors(served)
     answer = _answer(visitor, "response", visitor.visit)
@@ -162,7 +159,6 @@ def test_a_plot_is_saved_as_picture_and_numbers(served: Served, visitors: Any, t
         assert values[:, column].tolist() == each["gain"]
 
 
-@pytest.mark.campaign
 def test_numbers_that_are_not_current_are_not_saved(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
@@ -181,7 +177,6 @@ def test_numbers_that_are_not_current_are_not_saved(visitor: Visitor) -> None:
     assert page.locator(".plot-tools .menu-body button").first.is_enabled()
 
 
-@pytest.mark.campaign
 def test_other_designs_are_drawn_too(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
@@ -206,7 +201,6 @@ def _finished(visitor: Visitor, kind: str, points: int) -> Any:
     return job, json.loads(visitor.served.get(f"work/{known['id']}/result"))
 
 
-@pytest.mark.campaign
 def test_a_front_that_is_drawn_is_that_of_the_job(serve: Callable[..., Served], visitors: Any) -> None:
     visitor = visitors(serve(EXAMPLES / "trade_off.toml")).visit()
     page = visitor.page
@@ -241,7 +235,6 @@ def test_a_front_that_is_drawn_is_that_of_the_job(serve: Callable[..., Served], 
     wait_until(lambda: bool(known := visitor.values().items() & taken.items()) and len(known) > 0)
 
 
-@pytest.mark.campaign
 def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(serve: Callable[..., Served], visitors: Any) -> None:
     visitor = visitors(serve(EXAMPLES / "quarter-car.toml")).visit()  # where there are no other jobs
     page = visitor.page
@@ -264,7 +257,6 @@ def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(serve: Callab
     wait_until(lambda: (page.input_value("#network-text"), visitor.values()) == before)
 
 
-@pytest.mark.campaign
 def test_the_time_of_a_history_is_that_of_the_picture(serve: Callable[..., Served], visitors: Any) -> None:
     visitor = visitors(serve(EXAMPLES / "ball_screw.toml")).visit()
     page = visitor.page

@@ -62,7 +62,6 @@ def _hold(visitor: Visitor) -> None:
     visitor.page.get_by_role("button", name="Hold").click()
 
 
-@pytest.mark.campaign
 def test_the_vehicle_moves_until_it_is_held(visitor: Visitor) -> None:
     page = visitor.page
     _moving(visitor)
@@ -79,7 +78,6 @@ def test_the_vehicle_moves_until_it_is_held(visitor: Visitor) -> None:
     wait_until(lambda: page.evaluate(_INK) != still)
 
 
-@pytest.mark.campaign
 def test_the_picture_and_the_plot_have_one_time(visitor: Visitor) -> None:
     page = visitor.page
     _moving(visitor)
@@ -97,7 +95,6 @@ def test_the_picture_and_the_plot_have_one_time(visitor: Visitor) -> None:
     assert _time(visitor) - after == pytest.approx(-9.0 / 60.0, abs=2e-3)
 
 
-@pytest.mark.campaign
 def test_a_slider_asks_for_a_motion_when_it_rests(visitor: Visitor) -> None:
     """Thirty steps are no thirty simulations, and the last one is the one that is drawn."""
     page = visitor.page
@@ -122,7 +119,6 @@ def test_a_slider_asks_for_a_motion_when_it_rests(visitor: Visitor) -> None:
     assert asked[-1]["study"]["elements"]["k"] == page.input_value("[id='entry elements.k']")
 
 
-@pytest.mark.campaign
 def test_friction_that_sticks_is_amber(visitors: Any, served: Served, tmp_path: Path) -> None:
     study = tmp_path / "sticks.toml"
     study.write_text((EXAMPLES / "ball_screw.toml").read_text().replace('f = "10 N"', 'f = "100 kN"'))
@@ -137,7 +133,6 @@ def test_friction_that_sticks_is_amber(visitors: Any, served: Served, tmp_path: 
         wait_until(lambda amber=amber: (page.evaluate(_COUNT, STICK) > 40) == amber)
 
 
-@pytest.mark.campaign
 @pytest.mark.parametrize(("name", "reason"), [("absorber", "At rest."), ("train", ""), ("full-car", ""), ("seat", "")])
 def test_each_vehicle_is_drawn(name: str, reason: str, visitors: Any, served: Served) -> None:
     visitor = visitors(served, reduced_motion="no-preference").visit()
@@ -170,7 +165,6 @@ def test_reduced_motion_holds_the_vehicle(visitors: Any, served: Served) -> None
     wait_until(lambda: page.evaluate(_INK) != still)
 
 
-@pytest.mark.campaign
 def test_frames_are_short(visitor: Visitor, serve: Callable[..., Served]) -> None:
     """A frame's own work is a small part of a sixtieth of a second."""
     _moving(visitor)

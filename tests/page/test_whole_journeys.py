@@ -87,7 +87,6 @@ def _began(visitor: Visitor, person: Mouse) -> None:
     visitor.settled()
 
 
-@pytest.mark.campaign
 @pytest.mark.parametrize("kind", PEOPLE)
 def test_an_own_car_from_the_first_screen_to_the_report(
     kind: type[Mouse], nothing: Served, visitors: Callable[..., Visitor], tmp_path: Path
@@ -151,7 +150,6 @@ def test_an_own_car_from_the_first_screen_to_the_report(
     assert shown == [best["J1"], spread.mean, spread.standard_deviation, spread.quantile(0.95), spread.worst]
 
 
-@pytest.mark.campaign
 @pytest.mark.parametrize("kind", BY_KEYBOARD)
 def test_a_record_is_withheld_then_fitted_right_and_its_device_is_in_a_study(
     kind: type[Mouse], nothing: Served, visitors: Callable[..., Visitor], tmp_path: Path
@@ -196,7 +194,6 @@ def _layout(visitor: Visitor) -> str:
     return str(visitor.page.locator("[aria-label=Layouts] tr.on .pick").get_attribute("title"))
 
 
-@pytest.mark.campaign
 @pytest.mark.parametrize("kind", BY_MOUSE)
 def test_a_search_is_stopped_and_resumed(
     kind: type[Mouse], nothing: Served, visitors: Callable[..., Visitor], tmp_path: Path
@@ -233,7 +230,6 @@ def test_a_search_is_stopped_and_resumed(
 DOCUMENT = "() => sessionStorage.getItem('inerter.document')"
 
 
-@pytest.mark.campaign
 @pytest.mark.parametrize("kind", BY_KEYBOARD)
 def test_thirty_steps_are_undone_and_done_again(
     kind: type[Mouse], nothing: Served, visitors: Callable[..., Visitor]

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg
 from campaigns import sampled
 from designs import design
 from wang_su import paper_quarter_car
@@ -264,6 +265,39 @@ def test_directional_derivatives_are_what_acts_at_once(kind: str, masters: list[
         [master.references[n] for n in ("sprung_acceleration", "tyre_load")],
     )
     assert list(master.fmu.getDirectionalDerivative(unknown, known, [1.0])) == [1.0 / 181.75, 0.0]
+
+
+def test_a_friction_of_no_force_does_not_stick(masters: list[Master], tmp_path: Path) -> None:
+    """Nor does it hold back what a force does at once; with a force it sticks at rest, and both masses move as one."""
+    car = paper_quarter_car(K | C | it.Friction(50.0))
+    master = opened(masters, car, "fmu", tmp_path)
+    assert master.slopes("sprung_acceleration", ["sprung_force"]) == pytest.approx([1.0 / (181.75 + 25.0)], rel=1e-9)
+    master.set("f", 0.0)
+    assert master.slopes("sprung_acceleration", ["sprung_force"]) == pytest.approx([1.0 / 181.75], rel=1e-12)
+
+
+def test_gaps_that_would_strike_are_refused() -> None:
+    """As by simulation; one without width too, whose width is a parameter."""
+    for strut in (K | C | it.Gap(1e-3), K | C | it.Gap(1e-3) - B, K | C | it.Gap(0.0) - B):
+        with pytest.raises(it.InerterError, match="closing it would be an impact"):
+            it.export(paper_quarter_car(strut), "fmu")
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_linear_mechanism_on_moving_ground(kind: str, masters: list[Master], tmp_path: Path) -> None:
+    """Under a constant acceleration of the ground; masses are no parameters."""
+    building = it.Absorber(1000.0, 4e4, 50.0, it.Spring(2e3) | it.Damper(100.0), primary_damping=200.0)
+    mechanism = building.mechanism().on_moving_ground()
+    master = opened(masters, mechanism, kind, tmp_path)
+    shown = ("absorber_acceleration", "support_travel", "mount_force")
+    master.set("ground_acceleration", 2.0)
+    master.step(0.7)
+    system = it.state_space(mechanism, "ground_acceleration", shown)
+    n = system.order
+    flow = scipy.linalg.expm(0.7 * np.block([[system.A, system.B], [np.zeros((1, n + 1))]]))
+    expected = 2.0 * (system.C @ flow[:n, n] + system.D[:, 0])
+    assert master.get(*shown) == pytest.approx(expected, rel=1e-10)
+    assert "primary_mass" not in master.references
 
 
 @pytest.mark.parametrize("kind", KINDS)

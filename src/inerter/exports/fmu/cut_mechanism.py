@@ -14,11 +14,14 @@ from numpy.typing import NDArray
 
 from inerter.errors import ExportError, MechanismError
 from inerter.exports.fmu.equations import Equations, FmuParameter, equations_of
+from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import GuardRole, LinearRole
+from inerter.networks.transform import map_elements
 from inerter.systems.assemble import state_space
 from inerter.systems.coordinates import null_space
 from inerter.systems.graph import Branch, Graph, full_graph, switching
 from inerter.systems.incidence import incidence_rows, inertias, of_law
+from inerter.systems.kinematics import kinematics
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import force_of, of_mount, outputs
 from inerter.systems.structure import structure_of
@@ -148,7 +151,7 @@ class CutMechanism:
 def cut_mechanism(mechanism: Mechanism, prescribed: int = 0) -> CutMechanism:
     """The cut mechanism of one with numbers as values, whose first `prescribed` coordinates move as they are told.
 
-    Raises `ExportError` for friction or a gap on a road.
+    Raises `ExportError` for friction or a gap on a road, `MechanismError` as `piecewise` does.
     """
     whole = switching(mechanism)
     graph = full_graph(whole)
@@ -184,11 +187,24 @@ def cut_mechanism(mechanism: Mechanism, prescribed: int = 0) -> CutMechanism:
         points=tuple(cut.point for cut in cuts if cut.point is not None),
         mirror=(),
     )
+    kinematics(_with_widths(whole))  # refuses what simulation refuses, such as impacts
     reactions = {i: cut.reaction.name for i, cut in zip(numbers, cuts, strict=True)}
     carried = [reactions[i] if i in reactions else force_of(struts[i].name) for i in range(len(graph.branches))]
     found = full_graph(opened).branches if struts else ()
     labels = {one.label: graph.branches[i].label for one, i in zip(found, struts, strict=True)}
     return CutMechanism(whole, graph, opened, tuple(cuts), tuple(carried), labels)
+
+
+def _with_widths(mechanism: Mechanism) -> Mechanism:
+    """The mechanism whose gaps all have a width, as a host may give them; an FMU has no rigid joint in their place."""
+
+    def widen(element: Element) -> Network:
+        is_closed = element.switches_by(GuardRole.ELONGATION) and not element.acts
+        return element.with_value(1.0) if is_closed else element
+
+    struts = tuple(replace(s, network=map_elements(s.network, widen)) for s in mechanism.struts)
+    tyres = tuple(replace(t, network=map_elements(t.network, widen)) for t in mechanism.tyres)
+    return replace(mechanism, struts=struts, tyres=tyres)
 
 
 def _limit(cut: Cut) -> FmuParameter:

@@ -360,7 +360,8 @@ static int prepare(Model *model)
     return 1;
 }
 
-/* What an output changes by with the states and the inputs at once, while what sticks sticks, and contacts last. */
+/* What an output changes by with the states and the inputs at once, while what sticks sticks, and contacts last. A
+   reaction of one size never sticks; a gap without width is always in contact. */
 static double sensitivity(const Model *model, int number, const double *dx, const double *du)
 {
     double next[NX + 1], motion[NR + 1], dr[NR + 1], y = 0.0;
@@ -371,7 +372,7 @@ static double sensitivity(const Model *model, int number, const double *dx, cons
         for (j = 0; j < NU; j++) next[i] += model->glance.flow[i][NX + j] * du[j];
     }
     for (i = 0; i < NR; i++) {
-        active[i] = (contact(model, model->now.r, i) == 0) != GAP[i];
+        active[i] = model->low[i] < model->high[i] ? (contact(model, model->now.r, i) == 0) != GAP[i] : GAP[i];
         motion[i] = motion_of(model, i, next, du, NULL) - (CREEPS[i] ? motion_of(model, i, dx, du, NULL) : 0.0);
     }
     hold(model->glance.held, active, dr, motion);

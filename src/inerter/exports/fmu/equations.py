@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.networks.elements import Free
 from inerter.networks.elements.roles import LinearRole
 from inerter.systems.descriptor import Descriptor, describe_with_parameters
 from inerter.vehicle.mechanism import Mechanism
@@ -54,14 +55,17 @@ class Equations:
 
 
 def equations_of(mechanism: Mechanism, inputs: tuple[str, ...], outputs: tuple[str, ...]) -> Equations | None:
-    """The equations of the linear model of a mechanism; None where its structure depends on values."""
+    """The equations of the linear model of a mechanism; None where its structure depends on values.
+
+    On moving ground masses are part of the structure, and no parameters.
+    """
     found = describe_with_parameters(mechanism, inputs, outputs)
     if found is None:
         return None
     d, values = found
     graph = d.model.graph
     of = {str(b.element.value.name): b for b in graph.branches}  # type: ignore[union-attr]
-    masses = {str(c.inertia.name): c for c in d.mechanism.masses.values()}  # type: ignore[union-attr]
+    masses = {str(c.inertia.name): c for c in d.mechanism.masses.values() if isinstance(c.inertia, Free)}
     parameters = []
     for name in d.free:
         if name in of:

@@ -295,6 +295,13 @@ WRONG = {
         ),
         "is free. Fix it",
     ),
+    "a value of a condition": (
+        lambda: break_even(
+            series(), conventional(), it.Conditions([it.Condition(vehicle={"k": 9e4})]).mean(J3),
+            parameter="k", method=Norm(),
+        ),
+        "A condition changes 'k'",
+    ),
 }  # fmt: skip
 
 

@@ -540,6 +540,14 @@ BAD = {
         "study.break_even",
         ["together with a sweep"],
     ),
+    "budget and condition": (
+        [
+            asked('break_even = ["b"]\nbaseline = "S1"'),
+            ("[study]", '[[conditions]]\n"elements.b" = "200 kg"\n[[conditions]]\n[study]'),
+        ],
+        "study.break_even",
+        ["a condition changes b"],
+    ),
     "sweep that norm cannot see": (
         [*FRICTION, (INDICES, INDICES + '\nsweep = { f = ["10 N", "20 N"] }')],
         "study.sweep.f",

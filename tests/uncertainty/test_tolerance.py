@@ -317,6 +317,33 @@ def test_designs_within_double_precision_keep_their_sample_over_conditions(sprea
     assert found.status.ok
 
 
+@pytest.mark.parametrize("worst", [False, True], ids=["mean", "worst"])
+@pytest.mark.parametrize("name", ["k", "sprung_mass"])
+def test_a_value_that_a_condition_changes_scatters_about_what_it_is_there(name: str, worst: bool) -> None:
+    """The sample is that of the changed designs, taken together: their values have the same tolerance."""
+    numbers = {"k": 60e3, "sprung_mass": 260.0}
+    use = it.Conditions([it.Condition(1.0), it.Condition(3.0, vehicle={name: numbers[name]})])
+    changed = (
+        paper_quarter_car(it.Spring(60e3) | fixed().strut.parts[1])
+        if name == "k"
+        else dataclasses.replace(fixed(), sprung_mass=260.0)
+    )
+    asked = {"method": NORM, "spread": {name: 0.1, "c": 0.05}, "samples": 16, "seed": 3}
+    found = it.tolerance_analysis(fixed(), (use.worst if worst else use.mean)(J1), **asked)
+    first, second = (it.tolerance_analysis(car, J1, **asked).values for car in (fixed(), changed))
+    expected = np.maximum(first, second) if worst else 0.25 * first + 0.75 * second
+    assert found.values == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(("number", "name"), [("k", "k"), ("c", "c"), ("valve", "x")])
+def test_a_search_refuses_the_tolerance_of_a_value_that_a_condition_changes(number: str, name: str) -> None:
+    valve = it.Damper(it.free(100.0, 1e4, "x"), "valve")
+    car = paper_quarter_car(it.Spring(1.2e5) | valve | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(300.0))
+    use = it.Conditions([it.Condition(1.0), it.Condition(1.0, vehicle={number: 6e3})])
+    with pytest.raises(DesignError, match=f"that a condition changes, '{number}'"):
+        it.optimise_robust(car, use.mean(J1), NORM, spread={name: 0.1}, samples=16)
+
+
 def rubbing(**values: float) -> it.QuarterCar:
     """A friction beside an inerter, and a damper that friction alone loads."""
     inside = it.Inerter(50.0) - (it.Spring(1e6) | it.Damper(values.get("c2", 300.0), "c2") | it.Friction(20.0, "f"))

@@ -158,6 +158,10 @@ class OverConditions(OfIndex):
         """Constituent indices in all conditions, each with its vehicle."""
         return [asked for case, index in self.cases(vehicle) for asked in constituents_of(case, index)]
 
+    def combine(self, values: Array) -> Array:
+        """The mean by shares or the worst (designs,) of values in each condition (conditions, designs)."""
+        return np.asarray(values.max(axis=0) if self.worst else np.array(self.conditions.shares) @ values)
+
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> list[OverConditions]:
         """The index of each single output, taken in the same way; `split` takes an index apart."""
         return [dataclasses.replace(self, index=one) for one in split(self.index, vehicle)]
@@ -181,8 +185,7 @@ class OverConditions(OfIndex):
             own = {name: points[name] for name in case.free_values()}
             found = estimates_of(case, [index], method, own)[:, 0]
             columns.append(np.broadcast_to(found, (next(iter(points.values())).size if points else 1,)))
-        table = np.array(columns)
-        return np.asarray(table.max(axis=0) if self.worst else np.array(self.conditions.shares) @ table)
+        return self.combine(np.array(columns))
 
     def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:
         """The index as a function of the free values of the vehicle, which a condition may fix."""
@@ -193,6 +196,14 @@ class OverConditions(OfIndex):
             follow = None if own == names else Ties(names, tuple(Tied((name,)) for name in own))
             parts.append(ObjectivePart(objective_of(case, index, method), follow, 1.0 if self.worst else share))
         return combine_objectives(parts, worst=self.worst)
+
+
+def values_changed(index: IndexLike) -> frozenset[str]:
+    """Names of the numbers of the vehicle that conditions of an index change."""
+    inside = values_changed(index.index) if isinstance(index, OfIndex) else frozenset[str]()
+    if not isinstance(index, OverConditions):
+        return inside
+    return inside.union(*(one.vehicle for one in index.conditions.conditions))
 
 
 def _estimate_case(method: Method, case: tuple[Vehicle, IndexLike]) -> Estimate:

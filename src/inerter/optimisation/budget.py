@@ -15,6 +15,7 @@ from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.formatting import format_alike, format_range
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike
+from inerter.methods.conditions import values_changed
 from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
@@ -103,7 +104,8 @@ def break_even(
     Two crossings between neighbouring points of the grid are not detected: narrow the bounds where that is possible.
 
     Raises `DesignError` for an unknown element, for elements of several kinds, for a free value without bounds, or for
-    bounds that are not positive and in order; and the errors of `evaluate`.
+    bounds that are not positive and in order; for an element whose value a condition of the index changes; and the
+    errors of `evaluate`.
 
     >>> import inerter as it
     >>> k, c, b = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
@@ -119,6 +121,11 @@ def break_even(
     check_request(design, index, method)
     check_request(baseline, index, method)
     chosen = _elements(design, parameter)
+    if values_changed(index).intersection(element.label for element in chosen):
+        raise DesignError(
+            f"A condition changes {parameter!r}, which has no break-even value then; expected an element that no "
+            f"condition changes."
+        )
     between = _bounds(chosen, parameter, bounds)
     with running_on(executor):
         return _budget(design, baseline, index, parameter, method, chosen, between)

@@ -137,6 +137,8 @@ class Budgets(Task[BudgetAnswer]):
                 yield at(place, fault=missing, hint=nearest(name, study.elements))
             elif isinstance(study.elements[name].value, Tied):
                 yield at(place, fault=f"{name} is tied to others", expected="an element that is not tied")
+            elif any(name in condition.numbers for condition in study.conditions):
+                yield at(place, fault=f"a condition changes {name}", expected="an element that no condition changes")
             elif not set(used.get(name, ())) - {study.baseline}:
                 only = f"no layout but the baseline has {name}"
                 yield at(place, fault=only, expected="an element of a layout that is compared")

@@ -18,6 +18,7 @@ from inerter.vehicle.replace_values import (
     check_one_meaning,
     elements_by_label,
     masses,
+    mounted_elements,
     quantities,
     replace_values,
     to_editable,
@@ -186,3 +187,10 @@ def source_values(vehicle: Vehicle, scatter: Scatter) -> dict[str, str]:
             if isinstance(element.value, Free):
                 found[name] = str(element.value.name)
     return found
+
+
+def labels_with_tolerances(vehicle: Vehicle, scatter: Scatter) -> set[str]:
+    """Labels of the elements with tolerances, which are named by their labels or by their free values."""
+    elements = (element for part in mounted_elements(to_editable(vehicle)) for element in part)
+    known = {e.label: e.value.name if isinstance(e.value, Free) else None for e in elements}
+    return {label for label, free in known.items() if {label, free}.intersection(scatter.names)}

@@ -16,6 +16,7 @@ from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_o
 from inerter.formatting import format_share
 from inerter.indices.definition import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
+from inerter.methods.conditions import values_changed
 from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
@@ -24,6 +25,7 @@ from inerter.uncertainty.distributions import (
     Scatter,
     check_sample,
     elements_scatter,
+    labels_with_tolerances,
     nominal,
     scatter_left_out,
     scatter_of,
@@ -117,7 +119,15 @@ class Quantile(OfIndex):
         return np.where(np.isfinite(found), found, np.nan)
 
     def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:
-        """The quantile as a function of the free values, with its gradient if the index has one."""
+        """The quantile as a function of the free values, with its gradient if the index has one.
+
+        Raises `DesignError` for a tolerance of a value that a condition changes.
+        """
+        if changed := values_changed(self.index) & labels_with_tolerances(vehicle, self.scatter):
+            raise DesignError(
+                f"A search does not support the tolerance of a value that a condition changes, {sorted(changed)[0]!r}. "
+                f"Leave out one of the two."
+            )
         loose = with_free_scatter(vehicle, self.scatter)
         inner = objective_of(loose, self.index, method)
         own, after = nominal(vehicle, self.scatter), source_values(vehicle, self.scatter)

@@ -16,6 +16,7 @@ from inerter.deprecation import RenamedAttribute
 from inerter.errors import DesignError, Status, StatusKind, worst_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
+from inerter.methods.conditions import OverConditions
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.notebook import shown_by
 from inerter.uncertainty.distributions import (
@@ -244,7 +245,13 @@ def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:
 
 
 def evaluate_sample(design: Vehicle, index: IndexLike, method: Method, scatter: Scatter, factors: Array) -> Array:
-    """The index at the values of a design times these factors; nan where it has no value."""
+    """The index at the values of a design times these factors; nan where it has no value.
+
+    A value that a condition changes is there that of the condition times the factor.
+    """
+    if isinstance(index, OverConditions):
+        cases = index.cases(design)
+        return index.combine(np.array([evaluate_sample(*case, method, scatter, factors) for case in cases]))
     own = nominal(design, scatter)
     table = factors * np.array(list(own.values()))
     if elements_scatter(design, scatter):

@@ -10,6 +10,8 @@ from study_text import assert_survives, load_text, study_text
 from wang_su import ROAD
 
 import inerter as it
+from inerter.app.designs import Design
+from inerter.app.fixed_designs import with_fixed_values
 from inerter.errors import InerterError
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.checking import check_study
@@ -61,6 +63,39 @@ def test_its_bounds_are_places(tmp_path: Path) -> None:
     assert places(study)["vehicle.unsprung_mass.to"].value == 90.0
     wider = with_numbers(study, [(place_of("vehicle.unsprung_mass.to"), 95.0)])
     assert wider.vehicle["unsprung_mass"] == it.Free(20.0, 95.0, "unsprung_mass")
+
+
+def seated(folder: Path) -> Study:
+    """A study in which the mass on the seat is free."""
+    free = '[vehicle.seat]\nmass = { from = "50 kg", to = "90 kg" }\nnetwork = "ks | cs"\n\n[road]'
+    seat = 'ks = "12 kN/m"\ncs = "600 N s/m"\nb = "30 kg"'
+    text = text_of({}).replace("[road]", free).replace('b = "30 kg"', seat)
+    return load_text(folder, text.replace("J3", "J1"))
+
+
+def test_the_mass_on_a_seat_is_chosen_as_in_python(tmp_path: Path) -> None:
+    study = assert_survives(seated(tmp_path), tmp_path)
+    check_study(study)
+    assert study.free_units == {"c": "N s/m", "mass": "kg"}
+    found = run_study(study, tmp_path / "out").data.squeeze().sel(layout="S1")
+    strut = it.Spring(20e3) | it.Damper(it.free(100.0, 10e3, name="c"))
+    car = it.QuarterCar(250.0, 35.0, 150e3, strut)
+    seat = it.Seat(car, it.free(50.0, 90.0, name="mass"), it.Spring(12e3) | it.Damper(600.0))
+    best = it.optimise(seat, it.RideComfort(ROAD), it.Norm(), seed=0)
+    assert float(found["value"]) == pytest.approx(best.value, rel=1e-9)
+    told = {str(name): float(found["parameter_value"].sel(parameter=name)) for name in found["parameter"].values}
+    assert told == pytest.approx(best.parameters, rel=1e-6)
+
+
+def test_the_mass_on_a_seat_has_bounds_that_are_places_and_a_fixed_design(tmp_path: Path) -> None:
+    study = seated(tmp_path)
+    assert places(study)["vehicle.seat.mass.to"].value == 90.0
+    wider = with_numbers(study, [(place_of("vehicle.seat.mass.to"), 95.0)])
+    assert wider.vehicle["seat"]["mass"] == it.Free(50.0, 95.0, "mass")
+    assert study.with_values({"mass": 70.0, "c": 2e3}).vehicle["seat"]["mass"] == 70.0
+    design = Design(study, "S1", "S1", study.design("S1"), {"mass": 70.0, "c": 2e3})
+    fixed = with_fixed_values(study.to_tables(), study, [design])
+    assert fixed["vehicle"]["seat"]["mass"] == "70.0 kg"
 
 
 @pytest.mark.parametrize(

@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from functools import reduce
 from itertools import count
+from operator import getitem
 from typing import Any
 
 from inerter.app.designs import Design
 from inerter.errors import DesignError
+from inerter.files.study.places import free_in_vehicle
 from inerter.files.study.study import Study
 
 # keys of [study] that ask for more than the value of a design
@@ -25,7 +28,7 @@ def with_fixed_values(document: Mapping[str, Any], study: Study, designs: Sequen
     """
     names, elements = _rename_elements(study, designs)
     made = deepcopy(dict(document))
-    made["vehicle"] |= _vehicle(study, designs)
+    _fix_vehicle(made["vehicle"], study, designs)
     free = {name for design in designs for name in design.values}
     kept = {name: entry for name, entry in made["elements"].items() if name not in free}
     made["elements"] = {**kept, **elements}
@@ -40,15 +43,14 @@ def with_fixed_values(document: Mapping[str, Any], study: Study, designs: Sequen
     return made
 
 
-def _vehicle(study: Study, designs: Sequence[Design]) -> dict[str, str]:
-    """The free numbers of the vehicle, fixed."""
-    found = {}
-    for name in (name for name in study.free_units if name not in study.elements):
+def _fix_vehicle(vehicle: dict[str, Any], study: Study, designs: Sequence[Design]) -> None:
+    """Give the free numbers of the table `vehicle` the values of the designs."""
+    for name, (place, number) in free_in_vehicle(study).items():
         values = {design.values[name] for design in designs}
         if len(values) > 1:
             raise DesignError(f"These designs have several values of {name}, and a study has one. Take one at a time.")
-        found[name] = f"{values.pop()!r} {study.free_units[name]}"
-    return found
+        *tables, key = place.key.split(".")
+        reduce(getitem, tables, vehicle)[key] = f"{values.pop()!r} {number.unit}"
 
 
 def _keys(designs: Sequence[Design]) -> list[str]:

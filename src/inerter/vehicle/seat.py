@@ -32,7 +32,14 @@ class Seat(Stage):
 
     vehicle: Vehicle
     mass: float = field(
-        metadata=quantity("kg", "Occupant and moving part of the seat.", "60 kg", may_be_free=True, usual=(2.0, 500.0))
+        metadata=quantity(
+            "kg",
+            "Mass of the occupant and of the moving part of the seat.",
+            "60 kg",
+            words="mass on the seat",
+            may_be_free=True,
+            usual=(2.0, 500.0),
+        )
     )
     network: Network = field(metadata=mount("Between floor and occupant."))
     place: Port = field(default_factory=lambda: {"sprung": 1.0})

@@ -11,6 +11,7 @@ from inerter.errors import RegistryError, UnitError
 from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
     Codec,
+    Declaration,
     KeyPath,
     LoadContext,
     TableCodec,
@@ -20,7 +21,7 @@ from inerter.files.common.codec import (
     table_of,
 )
 from inerter.files.common.codecs import NamesCodec, TaggedCodec, WeightsCodec
-from inerter.files.common.entries import EXPRESSION, OUTPUT_NAME, TEXT, declaration_of, not_negative, positive, word
+from inerter.files.common.entries import EXPRESSION, OUTPUT_NAME, TEXT, declaration_of, not_negative, word
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.schema import quantity_schema
@@ -29,6 +30,7 @@ from inerter.units import PURE, parse_one_of, parse_quantity, quote_value
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.seat import Seat
 
 MECHANISM = "mechanism"
 SEAT = "seat"
@@ -222,12 +224,6 @@ class MeasureTable:
 class SeatTable:
     """A seat with its occupant, on any vehicle."""
 
-    mass: float = key(
-        positive("kg"),
-        "Mass of the occupant and of the moving part of the seat.",
-        'mass = "60 kg"',
-        words="mass on the seat",
-    )
     network: str = key(EXPRESSION, "Network between floor and occupant.", 'network = "ks | cs"')
     place: Mapping[str, float] | None = key(
         PORT,
@@ -280,12 +276,14 @@ class MechanismTable:
         "a section [vehicle.measures] with comfort = { body_acceleration = 1 }",
         default=NO_MEASURES,
     )
-    seat: Mapping[str, Any] | None = key(
-        _parts_of(SeatTable), "A seat with its occupant.", 'a section [vehicle.seat] with mass = "60 kg"', default=None
-    )
 
 
-_SEAT = keys_in(MechanismTable)[-1]
+def _seat(free: bool) -> Declaration:
+    """The table of a seat, whose mass may be `free`."""
+    mass = next(declaration_of(one, free=free) for one in fields_of(Seat))
+    table = table_of(SeatTable, keys=(mass, *keys_in(SeatTable)), make=dict, about=str(SeatTable.__doc__))
+    example = 'a section [vehicle.seat] with mass = "60 kg"'
+    return Declaration(table, "A seat with its occupant.", example, None, SEAT, SEAT, SEAT)
 
 
 def vehicle_codec(models: Sequence[str], check_model: Callable[[Any], str], *, free: bool) -> TaggedCodec:
@@ -304,9 +302,10 @@ def _vehicle_table(model: str, free: bool) -> TableCodec:
 
     tag = ("model", model, "The kind of vehicle.")
     if model == MECHANISM:
-        return table_of(MechanismTable, make=make, tag=tag, about=str(MechanismTable.__doc__))
+        keys = (*keys_in(MechanismTable), _seat(free))
+        return table_of(MechanismTable, keys=keys, make=make, tag=tag, about=str(MechanismTable.__doc__))
     keys = tuple(declaration_of(field, free=free) for field in fields_of(VEHICLES[model]))
-    seat = (_SEAT,) if VEHICLES[model].moved == "road" else ()
+    seat = (_seat(free),) if VEHICLES[model].moved == "road" else ()
     taken = sorted({"model", *(one.name for one in seat)} & {one.name for one in keys})
     if taken:
         raise RegistryError(

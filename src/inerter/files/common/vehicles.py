@@ -76,8 +76,18 @@ def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | Non
     """Name, value and unit of each quantity of a vehicle, or name, None and a text, for reports."""
     yield from _form(model).words(_without_seat(values))
     if SEAT in values:
-        yield "mass on the seat", values[SEAT]["mass"], "kg"
+        yield from _words_of(Seat, values[SEAT])
         yield "seat mounted at", None, _place(values[SEAT]["place"] or {"sprung": 1.0})
+
+
+def _words_of(kind: Any, values: Values) -> Iterator[tuple[str, float | None, str]]:
+    """Name, value and unit of each quantity that a dataclass declares and that is not zero."""
+    for field in fields_of(kind):
+        value = values[field.key]
+        if isinstance(value, Free):
+            yield field.in_words, None, f"free, {format_range(value.lower, value.upper, field.unit, 12)}"
+        elif value != 0.0:
+            yield field.in_words, value, field.unit
 
 
 def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
@@ -147,12 +157,7 @@ class _Model:
         return VEHICLES[self.model](**arguments)
 
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
-        for field in fields_of(VEHICLES[self.model]):
-            value = values[field.key]
-            if isinstance(value, Free):
-                yield field.in_words, None, f"free, {format_range(value.lower, value.upper, field.unit, 12)}"
-            elif value != 0.0:
-                yield field.in_words, value, field.unit
+        yield from _words_of(VEHICLES[self.model], values)
 
     def problems(self, values: Values) -> Iterator[Problem]:
         yield from ()

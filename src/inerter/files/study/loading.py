@@ -19,6 +19,7 @@ from inerter.files.common.vehicles import parts_of, tracks, vehicle_problems
 from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.own_indices import bare_index_problems, own_index_problems
+from inerter.files.study.places import free_in_vehicle
 from inerter.files.study.quantity_texts import texts_of
 from inerter.files.study.reference_checks import name_problems
 from inerter.files.study.scatter import tolerance_of
@@ -159,7 +160,7 @@ def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]
 def _free_value_problems(study: Study) -> Iterator[Problem]:
     named = elements_used(study)
     used = [name for name in named if name in study.free_networks or isinstance(study.elements[name].value, Free)]
-    used += [name for name, value in study.vehicle.items() if isinstance(value, Free)]
+    used += free_in_vehicle(study)
     if used and study.optimise is None:
         method = quote_value(methods_that(searches)[0])
         yield at(

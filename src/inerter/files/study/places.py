@@ -16,6 +16,7 @@ from inerter.files.common.roads import road_of, road_values
 from inerter.files.common.vehicles import parts_of
 from inerter.files.study.place import ELEMENTS, Place
 from inerter.files.study.sections import study_codec
+from inerter.networks.elements import Free
 
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
@@ -29,6 +30,12 @@ def number_at(study: Study, place: Place) -> Number | None:
 def places(study: Study) -> dict[str, Number]:
     """All numbers of a study by their labels, in the order of the file."""
     return {place.label: number for section in _SECTIONS for place, number in _numbers_in(study, section).items()}
+
+
+def free_in_vehicle(study: Study) -> dict[str, tuple[Place, Number]]:
+    """The free numbers of the vehicle with their places, by the names that they have in designs."""
+    found = _numbers_in(study, "vehicle").items()
+    return {place.key.rpartition(".")[2]: (place, one) for place, one in found if isinstance(one.value, Free)}
 
 
 def _numbers_in(study: Study, name: str) -> dict[Place, Number]:

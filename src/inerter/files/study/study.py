@@ -18,8 +18,8 @@ from inerter.files.common.roads import MeasuredLine
 from inerter.files.common.suggest import nearest
 from inerter.files.study.conditions import StudyCondition, condition_of, what_of
 from inerter.files.study.own_indices import OwnIndex
-from inerter.files.study.place import Place, element_at, place_of
-from inerter.files.study.places import sections_of, with_numbers
+from inerter.files.study.place import ELEMENTS, Place, element_at, place_of
+from inerter.files.study.places import free_in_vehicle, sections_of, with_numbers
 from inerter.files.study.sections import OVER, Settings, study_codec
 from inerter.indices.definition import Index
 from inerter.indices.names import index_names
@@ -34,7 +34,6 @@ from inerter.networks.parser import names
 from inerter.signals.road import Road
 from inerter.uncertainty.distributions import DISTRIBUTIONS, scatter_of
 from inerter.uncertainty.robust_design import Quantile
-from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.vehicle import Vehicle
 
 
@@ -199,13 +198,13 @@ class Study(Settings):
         """The unit of each free value that some layout has, by name: elements, then numbers of the vehicle."""
         used = elements_used(self)
         elements = {name: e.unit for name, e in self.elements.items() if name in used and isinstance(e.value, Free)}
-        own = fields_of(VEHICLES[self.model]) if self.model in VEHICLES else ()
-        return elements | {f.key: f.unit for f in own if isinstance(self.vehicle[f.key], Free)}
+        return elements | {name: number.unit for name, (_, number) in free_in_vehicle(self).items()}
 
     def with_values(self, values: Mapping[str, float]) -> Study:
         """Study with the design variables replaced by these values [SI], by name."""
-        sections = ((name, "elements" if name in self.elements else "vehicle") for name in values)
-        return with_numbers(self, [(Place(section, name), values[name]) for name, section in sections])
+        in_vehicle = {name: place for name, (place, _) in free_in_vehicle(self).items()}
+        found = {name: Place(ELEMENTS, name) if name in self.elements else in_vehicle[name] for name in values}
+        return with_numbers(self, [(place, values[name]) for name, place in found.items()])
 
     def to_tables(self) -> dict[str, Any]:
         """The study as a study file says it: plain tables, every default filled in, every quantity in SI units.

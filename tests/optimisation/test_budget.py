@@ -43,7 +43,7 @@ def test_two_stiffness_curves_cross_where_their_values_are_equal():
     roots = [scipy.optimize.brentq(difference, scan[i], scan[i + 1]) for i in at]
     assert len(roots) == 1
     found = break_even(series(), conventional(), J1, parameter="k", method=Norm(), bounds=(1e4, 3e5))
-    assert [c.value for c in found.crossings] == pytest.approx(roots, rel=3e-5)
+    assert [c.value for c in found.crossings] == pytest.approx(roots, rel=1e-9)
     assert found.value == found.crossings[0].value
     assert found.crossings[0].better == "above"
     assert (found.unit, found.parameter, found.bounds) == ("N/m", "k", (1e4, 3e5))

@@ -28,6 +28,7 @@ from inerter.work.running import running_on
 _POINTS = 16  # of the grid between which crossings are sought
 _REACH = 1e3  # ratio of the default bounds to the present value
 _SLOPE = 0.02  # relative step of the slope's difference
+_WITHIN, _EXACTLY = 1e-5, 1e-11  # relative error of a crossing, of values with and without errors of the method
 
 
 @dataclass(frozen=True)
@@ -252,7 +253,7 @@ def _with_fixed_roads(design: Vehicle, index: IndexLike, method: Method) -> Meth
 def _crossing(
     difference: Callable[[float], float], known: dict[float, Comparison], a: float, b: float, *, exact: bool
 ) -> Crossing:
-    root = float(scipy.optimize.brentq(difference, a, b, xtol=1e-5))
+    root = float(scipy.optimize.brentq(difference, a, b, xtol=_EXACTLY if exact else _WITHIN))
     rising = difference(b) > difference(a)
     slope = (difference(root + _SLOPE) - difference(root - _SLOPE)) / (2.0 * _SLOPE)
     difference(root)

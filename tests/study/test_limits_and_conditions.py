@@ -121,6 +121,53 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert "the nearest design" in report(result.data, study, tmp_path)
 
 
+@pytest.mark.parametrize("sections", ["", TWO], ids=["plain", "conditions"])
+def test_a_layout_without_design_variables_has_to_keep_the_limits_too(
+    load: Callable[..., Study], sections: str
+) -> None:
+    """Of two such layouts the softer one, which is better in the index, travels farther than the limit."""
+    elements = f'{FREE}\nk1 = "20 kN/m"\nc1 = "900 N s/m"\nc2 = "6 kN s/m"'
+    layouts = 'S1 = "k | c"\nsoft = "k1 | c1"\nfirm = "k1 | c2"'
+    limits = 'subject_to = { suspension-travel = { at_most = "5 mm" } }'
+    study = load(f'indices = ["J1"]\noptimise = "norm"\n{limits}', sections, elements, layouts=layouts)
+    results = dataset(study, {case: run_case(study, case) for case in cases(study) if case.layout != "S1"})
+    loads = [(250.0, 25.0), (320.0, 30.0)] if sections else [(250.0, 25.0)]
+    travels = [
+        max(
+            it.evaluate(
+                it.QuarterCar(mass, 35.0, 150e3, it.Spring(20e3) | it.Damper(c)),
+                it.SuspensionTravel(it.Road(5e-7, speed)),
+                it.Norm(),
+            ).value
+            for mass, speed in loads
+        )
+        for c in (900.0, 6e3)
+    ]
+    assert travels[1] < 5e-3 < travels[0]
+    soft, firm = (results.sel(layout=name, index="J1").squeeze("method") for name in ("soft", "firm"))
+    assert [float(one["limit_value"].item()) for one in (soft, firm)] == pytest.approx(travels, rel=1e-9)
+    assert str(soft["status"].item()).startswith("infeasible: ")
+    assert (np.isnan(soft["value"]), str(firm["status"].item())) == (True, "ok")
+    assert "soft has no feasible design." in conclusion_sentences(results, study)[-1]
+    assert "firm" not in conclusion_sentences(results, study)[-1]
+
+
+@pytest.mark.campaign
+def test_a_limit_that_nothing_keeps_is_said_of_an_inaccurate_value_too(load: Callable[..., Study]) -> None:
+    """Friction that sticks for a part of the time makes the value doubtful, and the limit is broken all the same."""
+    study = load(
+        'indices = ["J1"]\noptimise = "norm"\nevaluate = ["statistical-linearisation"]\n'
+        'subject_to = { suspension-travel = { at_most = "0.1 mm" } }',
+        elements='k = "20 kN/m"\nc = { from = "100 N s/m", to = "600 N s/m" }\nf = "300 N"',
+        layouts='S3 = "k | c | f"',
+    )
+    vehicle = study.design("S3").with_values({"c": 600.0})
+    assert it.evaluate(vehicle, study.index("J1"), it.StatisticalLinearisation()).status.kind.value == "inaccurate"
+    results = dataset(study, {case: run_case(study, case) for case in cases(study)})
+    assert str(results["status"].item()).startswith("infeasible: ")
+    assert np.isnan(results["value"]).all()
+
+
 def test_a_limit_that_nothing_keeps_is_named_once_over_conditions() -> None:
     car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(60e3) | it.Damper(it.free(100.0, 1e5, "c")))
     grip = it.TyreLoad(ROAD)

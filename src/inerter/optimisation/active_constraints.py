@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import Status, StatusKind, worst_of
+from inerter.errors import OK, Status, StatusKind, worst_of
 from inerter.formatting import format_quantity
 from inerter.indices.definition import quantity_words
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.optimisation.constrained_search import KEPT_COSTLY, ConstrainedProblem, sensitivities
-from inerter.optimisation.limits import Limit, Sense
+from inerter.optimisation.limits import Limit, Sense, for_each
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -68,6 +68,17 @@ def constraint_results(
     return tuple(found)
 
 
+def constraints_at(design: Vehicle, limits: Sequence[Limit], method: Method) -> tuple[ConstraintResult, ...]:
+    """The constraints at a design that has nothing to be chosen, so that there are no sensitivities."""
+    found = []
+    for limit in limits:
+        for one in for_each(limit.of, design):
+            held = ConstraintResult(replace(limit, of=one), estimate_of(design, one, method), False, 0.0)
+            active = abs(held.excess) <= _ACTIVE
+            found.append(replace(held, active=active, sensitivity=np.nan) if active else held)
+    return tuple(found)
+
+
 def with_limits(estimate: Estimate, held: Sequence[ConstraintResult]) -> Estimate:
     """The estimate of an optimum, with a status no better than those of its constrained quantities."""
     unsure = [one for one in held if not one.estimate.status.ok]
@@ -84,15 +95,26 @@ def with_limits(estimate: Estimate, held: Sequence[ConstraintResult]) -> Estimat
 
 def infeasible(held: Sequence[ConstraintResult], parameters: Mapping[str, float], units: Mapping[str, str]) -> Status:
     """Status of an infeasible problem, with the closest design and its parameters."""
-    labels = list(dict.fromkeys(one.label for one in held))  # a limit has the same one in all conditions
-    worst = [max((one for one in held if one.label == label), key=lambda one: one.excess) for label in labels]
-    missed = [one for one in worst if not one.excess <= KEPT_COSTLY] or worst
-    limits = " with ".join(labels)
-    nearest = " and ".join(
-        f"{quantity_words(one.limit.of)} {format_quantity(one.value, one.limit.of.unit)}" for one in missed
-    )
+    limits, nearest = _said(held)
     at = ", ".join(f"{name} = {format_quantity(value, units[name])}" for name, value in parameters.items())
     return Status(
         StatusKind.INFEASIBLE,
         f"no feasible design within the bounds for {limits}; closest: {nearest}, at {at}",
     )
+
+
+def broken(held: Sequence[ConstraintResult]) -> Status:
+    """Status of a design that has nothing to be chosen: "infeasible" where it breaks a constraint, else `OK`."""
+    if not any(one.excess > KEPT_COSTLY for one in held):
+        return OK
+    limits, nearest = _said(held)
+    return Status(StatusKind.INFEASIBLE, f"no feasible design for {limits}, as all values are fixed: {nearest}")
+
+
+def _said(held: Sequence[ConstraintResult]) -> tuple[str, str]:
+    """All constraints in words, and the values of those that are broken."""
+    labels = list(dict.fromkeys(one.label for one in held))  # a limit has the same one in all conditions
+    worst = [max((one for one in held if one.label == label), key=lambda one: one.excess) for label in labels]
+    missed = [one for one in worst if not one.excess <= KEPT_COSTLY] or worst
+    values = [f"{quantity_words(one.limit.of)} {format_quantity(one.value, one.limit.of.unit)}" for one in missed]
+    return " with ".join(labels), " and ".join(values)

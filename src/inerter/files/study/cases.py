@@ -20,6 +20,7 @@ from inerter.methods.compare import controls_of
 from inerter.methods.method import AveragingMethod, Estimate, evaluate
 from inerter.methods.notes import parts_of, with_prefix
 from inerter.methods.registry import brief_words_of, is_blind
+from inerter.optimisation.active_constraints import broken, constraints_at
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.systems.descriptor import is_held_by_springs, linear_notes
 from inerter.vehicle.mechanism import Mechanism
@@ -181,9 +182,10 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         "evaluations": 0,
     }
     found: Optimum | None = None
+    limits = [limit for several in limits_in(study) for limit in several]
+    searched: tuple[Status, ...] = ()  # of the search, or of the limits where there is none
     if study.optimise is not None and vehicle.free_values():
         method = study.method(study.optimise, threads)
-        limits = [limit for several in limits_in(study) for limit in several]
         free = vehicle
         asked = study.resolve_index(case.index, case.layout)
         with within("search", 0.0, _SEARCHED):
@@ -198,6 +200,11 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
             "evaluations": found.evaluations,
         }
         fields["limits"] = [list(one) for one in limit_results(study, free, found.limits)]
+        searched = (found.status,)
+    elif study.optimise is not None and limits:
+        held = constraints_at(vehicle, limits, study.method(study.optimise, threads))
+        fields["limits"] = [list(one) for one in limit_results(study, vehicle, held)]
+        searched = (broken(held), *(one.estimate.status for one in held))
 
     def estimate(method: str, index: str) -> Estimate:
         report(f"values by {method}", share=_SEARCHED if found is not None else None)
@@ -222,7 +229,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
     over = found.gain_over_linear if found else None
     estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
-    worst = worst_of((*(e.status for e in own.values()), *((found.status,) if found else ())))
+    worst = worst_of((*(e.status for e in own.values()), *searched))
     bad = next((f"{brief_words_of(method)}: " for method, e in own.items() if e.status == worst and len(own) > 1), "")
     left_out = design_notes(study, vehicle.mechanism())
     notes = [with_prefix(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
@@ -239,7 +246,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         **fields,
         values={m: {i: e.value for i, e in by_index.items()} for m, by_index in estimates.items()},
         standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
-        status={m: (worst if e.status.ok else e.status).kind.value for m, e in own.items()},
+        status={m: (worst if e.status.ok else worst_of((e.status, *searched))).kind.value for m, e in own.items()},
         message=f"{'' if worst.ok else bad}{worst.message}" if worst.message else "",
         notes=list(map(list, dict.fromkeys(notes))),
         realisations={m: e.realisations for m, e in own.items() if e.realisations},

@@ -10,6 +10,7 @@ import pytest
 from campaigns import sampled
 from folders import EXAMPLES
 from report_pages import Page
+from study_text import load_text, study_text
 from synthetic import LONG, designs, judged, sweep, with_value
 from wang_su import paper_half_car
 
@@ -230,6 +231,18 @@ def test_networks_are_drawn_where_the_question_is(study, tmp_path):
     names = Counter(value for key, value in page.attributes if key == "id")
     assert set(names.values()) == {1}
     assert asked.count("This drawing is wider than the screen") == len(study.layouts)
+
+
+def test_layouts_that_differ_by_case_alone_have_files_of_their_own(tmp_path):
+    """Some systems of files take `S1.svg` and `s1.svg` for one."""
+    text = study_text('indices = ["J1"]', layouts='S1 = "k | c"\ns1 = "k | c | b"')
+    study = load_text(tmp_path, text)
+    files = draw_layouts(study, tmp_path / "figures")
+    assert len({file.name.lower() for file in files}) == len(files) == 2
+    drawn = [file.read_text(encoding="utf-8") for file in files]
+    assert drawn[0] != drawn[1]
+    asked = report(designs(), study, tmp_path / "figures").partition("Problem definition</h2>")[2].partition("<h2")[0]
+    assert asked.count("<svg") == 2
 
 
 def test_an_index_of_several_outputs_says_how_they_are_combined():

@@ -6,13 +6,15 @@ from pathlib import Path
 
 from inerter.errors import NetworkError
 from inerter.figures.networks import draw_networks
+from inerter.figures.style import file_stems
 from inerter.files.study.study import Study
 from inerter.networks.parser import network
 
 
-def layout_figure(layout: str) -> str:
-    """File name, without suffix, of the figure of a layout."""
-    return f"layout-{layout}"
+def layout_figures(study: Study) -> dict[str, str]:
+    """File name, without suffix, of the figure of each layout."""
+    stems = file_stems(f"layout-{layout}" for layout in study.layouts)
+    return dict(zip(study.layouts, stems.values(), strict=True))
 
 
 def draw_layouts(study: Study, folder: Path) -> list[Path]:
@@ -20,7 +22,7 @@ def draw_layouts(study: Study, folder: Path) -> list[Path]:
 
     Mounts with the same network share one drawing.
     """
-    files = []
+    files, stems = [], layout_figures(study)
     for name, layout in study.layouts.items():
         mounts: dict[str, list[str]] = {}
         for mount, text in layout.struts.items():
@@ -33,5 +35,5 @@ def draw_layouts(study: Study, folder: Path) -> list[Path]:
             }
         except NetworkError:  # a distribution's element that cannot be mounted by itself
             continue
-        files += draw_networks(networks, folder, layout_figure(name), alone=True)
+        files += draw_networks(networks, folder, stems[name], alone=True)
     return files

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.figures.labels import axis_label
 from inerter.figures.networks import draw_networks
-from inerter.figures.style import add_legend, colour, marker, new_figure, save, style_context
+from inerter.figures.style import add_legend, colour, file_stems, marker, new_figure, save, style_context
 from inerter.files.study.searching import LayoutFront, LayoutSearch, StudySearch, searched_mounts
 from inerter.formatting import capital, choose_scale, typeset_quantity
 from inerter.indices.names import title_with_name
@@ -28,28 +28,27 @@ _HEIGHT, _FRONT_HEIGHT = 2.4, 3.4  # of a row of panels [inch]
 _FAR = 3.0
 
 
-def best_networks_figure(one: LayoutSearch) -> str:
-    """File name, without suffix, of the schematics of the best networks of a layout for an index."""
-    return f"networks-{one.layout}-{one.index}"
-
-
-def front_figure(one: LayoutFront) -> str:
-    """File name, without suffix, of the fronts of a layout."""
-    return f"front-{one.layout}"
+def figure_names(found: StudySearch) -> tuple[dict[str, LayoutSearch], dict[str, LayoutFront]]:
+    """File names, without suffix, of the schematics of the best networks, and of the fronts, with what each shows."""
+    names = [FRONTIER, *(f"networks-{one.layout}-{one.index}" for one in found.searches)]
+    _, *stems = file_stems([*names, *(f"front-{one.layout}" for one in found.fronts)]).values()
+    return dict(zip(stems, found.searches, strict=False)), dict(
+        zip(stems[len(found.searches) :], found.fronts, strict=True)
+    )
 
 
 def draw_search(found: StudySearch, folder: Path) -> list[Path]:
     """Write the frontier, and as SVG the best networks, into `folder`; returns the files."""
+    networks, fronts = figure_names(found)
     searches = [one for one in found.searches if one.result.frontier]
     if not searches:
         return []
     with style_context():
         files = save(_frontier_figure(found, searches), folder, FRONTIER)
-    for one in searches:
-        files += draw_networks(
-            dict(_best_networks(found, one)), folder, best_networks_figure(one), values=True, alone=True
-        )
-    for front in found.fronts:
+    for name, one in networks.items():
+        if one.result.frontier:
+            files += draw_networks(dict(_best_networks(found, one)), folder, name, values=True, alone=True)
+    for name, front in fronts.items():
         if len(front.result.front) > 1:
             with style_context():
                 pairs = list(combinations(range(len(front.result.symbols)), 2))
@@ -57,7 +56,7 @@ def draw_search(found: StudySearch, folder: Path) -> list[Path]:
                 for pair, ax in zip(pairs, axes, strict=True):
                     front_curves(found, front, pair, ax)
                 add_legend(figure, axes)
-                files += save(figure, folder, front_figure(front))
+                files += save(figure, folder, name)
     return files
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -33,7 +33,7 @@ from inerter.figures.labels import (
     trade_off_title,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
-from inerter.figures.style import WIDE, add_legend, new_figure, save, style_context
+from inerter.figures.style import WIDE, add_legend, file_stems, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 from inerter.formatting import format_list, format_number
 
@@ -53,7 +53,9 @@ class StudyFigure:
 
 def study_figures(results: xr.Dataset) -> list[StudyFigure]:
     """All figures of a study, in the order of a report. Nothing is drawn yet."""
-    return list((_of_designs, _of_sweep, _of_map)[len(swept_places(results))](results))
+    found = list((_of_designs, _of_sweep, _of_map)[len(swept_places(results))](results))
+    stems = file_stems(one.name for one in found)
+    return [replace(one, name=stems[one.name]) for one in found]
 
 
 def draw_study(results: xr.Dataset, folder: Path) -> list[Path]:

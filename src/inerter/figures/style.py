@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain, count
 from math import ceil
 from pathlib import Path
 from typing import Any
@@ -182,6 +183,22 @@ def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None
     axis.set_minor_locator(LogLocator(subs=(2.0, 5.0) if few else tuple(range(2, 10))))
     axis.set_minor_formatter(plain if few else NullFormatter())
     axis.set_tick_params(which="minor", labelsize=7.0, width=0.4)
+
+
+def file_stems(names: Iterable[str]) -> dict[str, str]:
+    """A file name without suffix for each name: itself, or numbered if it differs from one before by case alone.
+
+    To some systems `S1.svg` and `s1.svg` are one file.
+
+    >>> file_stems(["S1", "S3", "s1"])
+    {'S1': 'S1', 'S3': 'S3', 's1': 's1-2'}
+    """
+    stems: dict[str, str] = {}
+    for name in names:
+        taken = {stem.lower() for stem in stems.values()}
+        choices = chain([name], (f"{name}-{number}" for number in count(2)))
+        stems[name] = next(stem for stem in choices if stem.lower() not in taken)
+    return stems
 
 
 def save(figure: Figure, folder: Path, name: str, *, pdf: bool = False, png: bool = True) -> list[Path]:

@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 
 from inerter.atomic_io import write_text
 from inerter.figures.labels import index_words, indices, swept_places
-from inerter.figures.layouts import layout_figure
+from inerter.figures.layouts import layout_figures
 from inerter.figures.study import study_figures
 from inerter.files.study.place import Sweep
 from inerter.files.study.plausibility import roads_sentences
@@ -74,8 +74,8 @@ def report(
         searched=study.optimise is not None,
         drawings={
             layout: figure.drawing
-            for layout in study.layouts
-            for figure in page_figures(figures, layout_figure(layout), f"Networks of {layout}", natural=True)
+            for layout, name in layout_figures(study).items()
+            for figure in page_figures(figures, name, f"Networks of {layout}", natural=True)
         },
         sections=list(design_sections(results)),
         further_sections=[*task_sections(study, results, found), *trade_off_section(results)],

@@ -9,7 +9,7 @@ from typing import Any
 
 import inerter
 from inerter.atomic_io import write_text
-from inerter.figures.search import FRONTIER, best_networks_figure, draw_search, front_figure
+from inerter.figures.search import FRONTIER, draw_search, figure_names
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
@@ -191,15 +191,14 @@ def write_search_report(found: StudySearch, folder: Path) -> None:
 
 def _drawings(found: StudySearch, folder: Path) -> Iterator[PageFigure]:
     captions = {FRONTIER: "Best value for each number of elements of the networks."}
-    for one in found.searches:
-        captions[best_networks_figure(one)] = (
-            f"{capital(one.heading)}: the best network for each number of elements, with its values."
-        )
-    for front in found.fronts:
+    networks, fronts = figure_names(found)
+    for name, one in networks.items():
+        captions[name] = f"{capital(one.heading)}: the best network for each number of elements, with its values."
+    for name, front in fronts.items():
         what = "Pareto fronts of all networks of up to each number of elements; the networks of the outermost are named"
         if len(front.result.symbols) > 2:
             what = "the Pareto front over all networks, two indices at a time"
-        captions[front_figure(front)] = (
+        captions[name] = (
             f"{capital(front.heading)}: {what}. A cross marks a layout without a free network. Designs far from the "
             "front over all networks are not in the picture."
         )

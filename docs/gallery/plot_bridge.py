@@ -2,8 +2,8 @@
 A bridge
 ========
 
-Five arms between two ends and two inner nodes: not a series-parallel network. Its admittance beside that
-without the middle arm.
+Five arms between two ends and two inner nodes: not a series-parallel network. Its admittance is compared
+with that without the middle arm.
 """
 
 import inerter as it

@@ -2,7 +2,8 @@
 Over a bump
 ===========
 
-A bump of 50 mm, 1 m long, at 5 m/s: the wheel lifts off where its load is more than its weight.
+A bump of 50 mm, 1 m long, at 5 m/s: a real wheel would lift off where the tension of its tyre exceeds the
+static load; the model, whose tyre can pull, reports that.
 """
 
 import matplotlib.pyplot as plt

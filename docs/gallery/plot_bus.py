@@ -1,8 +1,8 @@
 """
-A bus with air springs
-======================
+A bus, empty and full
+=====================
 
-A bus on soft springs, empty and full: one damper and one inerter for both loads.
+One damper and one inerter for all loads, on springs of constant stiffness. (That of an air spring grows with its load.)
 """
 
 import matplotlib.pyplot as plt

@@ -25,5 +25,5 @@ for letter in "ABCDE":
     own = it.Road.iso8608(letter, speed=25)
     ax.loglog(wavenumber, 2 * own.roughness / wavenumber**2, label=letter)
     print(letter, it.evaluate(car(k | it.Damper(4981)), it.RideComfort(own), it.Norm()).value)
-ax.set(xlabel="Wavenumber [cycle/m]", ylabel="Displacement density [m³]")
+ax.set(xlabel="Wavenumber [cycle/m]", ylabel="Displacement PSD, one-sided [m³]")
 ax.legend(title="class")

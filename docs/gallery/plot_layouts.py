@@ -2,21 +2,17 @@
 Layouts as drawings
 ===================
 
-The eight layouts of the literature, drawn from their networks.
+The eight layouts of Smith and Wang (2004), drawn from their networks. K carries the car; kb, k1 and k2 are further
+springs.
 """
 
 import inerter as it
 
-k, c, b = it.Spring(120e3), it.Damper(3e3), it.Inerter(100.0)
-k1, k2 = it.Spring(60e3, "k1"), it.Spring(90e3, "k2")
+values = {"K": 120e3, "kb": 200e3, "k1": 60e3, "k2": 90e3}
+elements = {"c": it.Damper(3e3), "b": it.Inerter(100.0)} | {name: it.Spring(k, name) for name, k in values.items()}
 layouts = {
-    "S1": k | c,
-    "S2": k | c | b,
-    "S3": k | c - b,
-    "S4": k | c - k1,
-    "S5": k | c - k1 - b,
-    "S6": k | (c | k1) - b,
-    "S7": k | c - (b | k1),
-    "S8": k | (c | k1) - (b | k2),
+    layout.name: it.network(layout.expression, **elements)
+    for layout in it.LAYOUTS.values()
+    if layout.source.startswith("Smith and Wang (2004)")
 }
 figure = it.plot_network(layouts)

@@ -2,8 +2,11 @@
 Poles with and without an inerter
 =================================
 
-The inerter in series splits the body's resonance into two well-damped ones.
+The body on its conventional strut has one mode, at 3.0 Hz with a damping ratio of 0.15. With the inerter in series there
+are two: one at 2.4 Hz, with the same damping ratio, and one at 4.7 Hz with 0.38.
 """
+
+import numpy as np
 
 import inerter as it
 
@@ -17,4 +20,8 @@ def car(strut):
 
 
 designs = {"S1": car(k | it.Damper(4981)), "S3": car(k | it.Damper(7544) - it.Inerter(366.5))}
+for name, design in designs.items():
+    for pole in np.linalg.eigvals(it.state_space(design).A):
+        if pole.imag > 0:
+            print(f"{name}: {abs(pole) / (2 * np.pi):.2f} Hz, damping ratio {-pole.real / abs(pole):.2f}")
 ax = it.plot_poles(designs)

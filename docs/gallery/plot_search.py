@@ -2,7 +2,7 @@
 Which network is best?
 ======================
 
-All networks of up to three elements beside the spring: what one more element gains.
+All networks of up to three elements in parallel with the spring: what one more element gains.
 """
 
 import matplotlib.pyplot as plt

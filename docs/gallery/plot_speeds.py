@@ -2,7 +2,8 @@
 At every speed
 ==============
 
-One design from 5 to 50 m/s: on a road of the second power the curves are parallel, and the gain is the same.
+One design from 5 to 50 m/s: on a road of waviness 2 both values grow as the square root of speed, so that the gain is
+the same at every speed.
 """
 
 import matplotlib.pyplot as plt

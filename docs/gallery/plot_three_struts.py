@@ -3,7 +3,8 @@ Three struts of a quarter car
 =============================
 
 The best conventional strut, and the best with an inerter in parallel or in series with the damper. Each is
-optimal for ride comfort; the inerter in series lowers the peak at the body's resonance and leaves the rest.
+optimal for ride comfort; the inerter in series lowers the peak at
+the body's resonance by a third; somewhat below that and from 5 to 10 Hz the response is a little larger.
 """
 
 import inerter as it

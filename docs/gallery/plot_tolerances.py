@@ -2,7 +2,8 @@
 Tolerances of a damper and an inertance
 =======================================
 
-Comfort of 1024 cars whose damper is right to 20 % and whose inertance is right to 10 %.
+Comfort of 1024 cars whose damper lies within 20 % and whose inertance within 10 % of the nominal value, all values
+equally likely.
 """
 
 import matplotlib.pyplot as plt

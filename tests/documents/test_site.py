@@ -11,12 +11,16 @@ from pathlib import Path
 
 import pytest
 from folders import ROOT
-from pages import NUMBER, text_of
+from pages import NUMBER, PAGES, text_of
 
 import inerter
 from inerter.cli.main import app
 from inerter.files.common.keys import keys_of
 from inerter.files.study.schema import study_schema
+
+# "Dodds and Robson 1973", "Smith (2002)", "Saltelli et al. (2010)": the first author, and the year
+SOURCE = re.compile(r"\b([A-ZÅ][^\W\d_]+)(?:(?:, [A-Z]\w+)* and [A-Z]\w+| et al\.)? \(?((?:19|20)\d\d)\b")
+YEAR = re.compile(r"\(((?:19|20)\d\d)\)")
 
 
 @pytest.fixture(scope="module")
@@ -90,3 +94,15 @@ def test_numbers_of_the_paper_are_those_of_the_tutorial() -> None:
     numbers = NUMBER.findall(example)
     assert len(numbers) >= 5
     assert [number for number in numbers if number not in NUMBER.findall(text_of("tutorial.md"))] == []
+
+
+def test_every_source_that_pages_name_is_among_the_references() -> None:
+    """A page says author and year; the page of theory says where that is to be read."""
+    references = text_of("theory.md").partition("## References\n")[2]
+    entries = {
+        (line.split(",")[0].split()[-1], year) for line in references.splitlines() for year in YEAR.findall(line)
+    }
+    text = "\n".join(text_of(page).partition("## References\n")[0] for page in PAGES if page != "CONTRIBUTING.md")
+    named = set(SOURCE.findall(" ".join(text.split())))
+    assert len(named) > 25
+    assert sorted(named - entries) == []

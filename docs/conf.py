@@ -65,6 +65,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_memory": False,
     "min_reported_time": 10,
+    "write_computation_times": False,  # a page whose scripts come from another host
     "abort_on_example_error": True,
     "nested_sections": False,
     "show_signature": False,

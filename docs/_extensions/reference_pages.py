@@ -68,8 +68,10 @@ EXAMPLES = {
         (True, 'N')
         """,
     "LAYOUTS": """
-        >>> it.LAYOUTS["S3"].expression
-        'k | c - b'
+        >>> it.LAYOUTS["S3"].expression, it.LAYOUTS["SW4"].expression
+        ('k | c - b', 'K | kb - (c | b)')
+        >>> it.LAYOUTS["SW4"].source
+        'Smith and Wang (2004), layouts S1 to S8 by their admittances'
         """,
     "METHODS": """
         >>> it.METHODS["norm"] is it.Norm, [key for key, kind in it.METHODS.items() if not kind.supports_optimisation]
@@ -107,7 +109,16 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("autodoc-process-docstring", _escape_bars)
     app.connect("autodoc-process-docstring", _add_quantities)
     app.connect("builder-inited", lambda built: write_reference(Path(built.srcdir) / "reference"))
+    app.connect("html-collect-pages", _forget_modules_without_source, priority=400)  # before viewcode lists them
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+
+
+def _forget_modules_without_source(app: Sphinx) -> Iterator[tuple[str, dict[str, Any], str]]:
+    """Of such modules, as `builtins`, viewcode writes no page, but a link to it."""
+    modules = getattr(app.env, "_viewcode_modules", {})
+    for name in [name for name, entry in modules.items() if not entry]:
+        del modules[name]
+    yield from ()
 
 
 def write_reference(folder: Path) -> None:

@@ -2,8 +2,8 @@
 Poles with and without an inerter
 =================================
 
-The body on its conventional strut has one mode, at 3.0 Hz with a damping ratio of 0.15. With the inerter in series there
-are two: one at 2.4 Hz, with the same damping ratio, and one at 4.7 Hz with 0.38.
+The body on its conventional strut has one mode, at 3.05 Hz with a damping ratio of 0.15. With the inerter in series it
+has two: one at 2.37 Hz, with the same damping ratio, and one at 4.70 Hz with 0.38.
 """
 
 import numpy as np

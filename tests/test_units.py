@@ -123,7 +123,7 @@ def test_the_unit_tells_the_element(text, unit, value):
         ("10 kn/m", ("knot", "N/m")),
         ("10 KN/m", ("unknown unit", "case-sensitive")),
         ("10 foo", ("unknown unit", '"foo"')),
-        ("5 kNs/m", ("unknown unit", "space")),
+        ("5 kNs/m", ("unknown unit", "space", '"5 N/m"')),
         ("N/m", ("begin with a number",)),
         ("", ("begin with a number",)),
         ("stiff", ("begin with a number",)),
@@ -157,6 +157,16 @@ def test_what_is_not_a_stiffness_is_refused_in_one_sentence(text, words):
     assert all(word in message for word in (*words, "expected", "such as"))
     assert "\n" not in message
     assert len(message) < 300
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "meant"),
+    [("5 kNs/m", "N s/m", "5 kN s/m"), ("1400 kgm^2", "kg m^2", "1400 kg m^2"), ("7 Ns/mm", "N s/m", "7 N s/mm")],
+)
+def test_a_product_in_one_is_proposed_apart_and_with_its_prefix(text: str, unit: str, meant: str) -> None:
+    with pytest.raises(UnitError, match=re.escape(f'such as "{meant}"')):
+        parse_quantity(text, unit)
+    assert parse_quantity(meant, unit) > 0.0
 
 
 @pytest.mark.parametrize(("at_n0", "at_omega0"), [(16, 1), (64, 4), (256, 16), (1024, 64), (4096, 256), (16384, 1024)])

@@ -6,7 +6,7 @@ import json
 import math
 import re
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -28,6 +28,7 @@ _DENSITY = "/Hz"  # suffix of a spectral density, which may be given per rad/s t
 _PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # weight of a mass, as meant in a force
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
+_IN_ONE = re.compile(r"(?<=N)(?=s|m)|(?<=kg)(?=m)")  # where products are often written in one
 PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
@@ -50,7 +51,7 @@ def parse_quantity(text: str, unit: str) -> float:
     120000.0
     """
     expected, example = _FORMS if unit == _ROUGHNESS else (f"a unit of {unit}", "")
-    number, given = _split(text, expected, unit, example)
+    number, given = _split(text, expected, (unit,), example)
     if unit == _ROUGHNESS and (form := _density_form(given)) is not None:
         return _convert(text, number, given, "m^3") * _KAPPA_OVER[form]
     if not _have_same_dimension(given, unit):
@@ -71,7 +72,7 @@ def parse_one_of(text: str, units: Mapping[str, str], example: str, what: str = 
     >>> parse_one_of("3.2 kN s/m", {"N/m": "spring", "N s/m": "damper"}, "N/m")
     ('N s/m', 3200.0)
     """
-    number, given = _split(text, f"one of {', '.join(units)}", example)
+    number, given = _split(text, f"one of {', '.join(units)}", (example, *units))
     for unit in units:
         if _have_same_dimension(given, unit):
             _check_density(text, given, unit)
@@ -90,7 +91,7 @@ def unit_in(text: str) -> str:
 
     Raises `UnitError` unless `text` is a finite number followed by a unit.
     """
-    return _split(text, "its unit", "kN/m")[1]
+    return _split(text, "its unit")[1]
 
 
 def is_unit(unit: str) -> bool:
@@ -162,9 +163,9 @@ def quote_value(value: object) -> str:
     return text if len(text) <= 62 else f"{text[:58]}..." + text[-1] * text.startswith('"')
 
 
-def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[str, str]:
-    """Number and known unit in `text`; `unit`, or an `example`, is for the error message."""
-    example = example or f"{_number_of(text)} {unit}"
+def _split(text: object, expected: str, units: Sequence[str] = (), example: str = "") -> tuple[str, str]:
+    """Number and known unit in `text`; the first of the right `units`, or an `example`, is for the error message."""
+    example = example or (f"{_number_of(text)} {units[0]}" if units else "")
     if not isinstance(text, str):
         is_number = isinstance(text, int | float) and not isinstance(text, bool)
         _fail(text, "unit missing" if is_number else "not a quantity in quotes", expected, example)
@@ -180,6 +181,9 @@ def _split(text: object, expected: str, unit: str, example: str = "") -> tuple[s
         _fail(text, "unit missing", expected, example)
     if not is_unit(given):
         why = "(units are case-sensitive; write a product with a space or *)"
+        apart = _apart(given)
+        if any(apart and _have_same_dimension(apart, unit) for unit in units):
+            example = f"{number.group(1)} {apart}"
         _fail(text, f"unknown unit {quote_value(given)} {why}", expected, example)
     return number.group(1), given
 
@@ -203,6 +207,12 @@ def _as_force(given: str, units: Iterable[str]) -> str:
     """`given` with forces for its masses ("lbf/in" for "lb/in"), if compatible with one of `units`; else empty."""
     force = _MASS.sub(lambda mass: _FORCES[mass[0]], given)
     return force if force != given and any(_have_same_dimension(force, unit) for unit in units) else ""
+
+
+def _apart(given: str) -> str:
+    """`given` with the products apart that are often written in one ("kNs/m", "kgm^2"), if it is a unit then."""
+    apart = _IN_ONE.sub(" ", given)
+    return apart if apart != given and is_unit(apart) else ""
 
 
 def _with_prefix(given: str, unit: str) -> str:
@@ -249,7 +259,8 @@ def _describe_unit(given: str) -> str:
 
 
 def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
-    raise UnitError(f'Got {quote_value(text)}: {problem}; expected a number with {expected}, such as "{example}".')
+    like = f', such as "{example}"' if example else ""
+    raise UnitError(f"Got {quote_value(text)}: {problem}; expected a number with {expected}{like}.")
 
 
 @cache

@@ -332,7 +332,12 @@ def test_limits_and_conditions_survive_being_written(load: Callable[..., Study])
 ASK = 'indices = ["J1"]\noptimise = "norm"\n'
 LIMIT = ASK + "subject_to = "
 BAD = {
-    "limit of nothing": (LIMIT + '{ J9 = { at_most = "1 N" } }', "", "study.subject_to.J9", ["can be limited", "J1"]),
+    "limit of nothing": (
+        LIMIT + '{ J9 = { at_most = "1 N" } }',
+        "",
+        "study.subject_to.J9",
+        ["cannot be limited", "J1"],
+    ),
     "limit misspelt": (
         LIMIT + '{ tire-load = { at_most = "1 N" } }',
         "",

@@ -18,6 +18,7 @@ from inerter.files.common.problems import refusal
 
 _LARGEST = 1_000_000  # bytes
 _POSITION = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
+_DECLARED_TWICE, _QUOTED = re.compile(r"Cannot declare \((.*)\) twice"), re.compile(r"'([^']*)'")
 _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 
 
@@ -107,6 +108,11 @@ def _syntax_problem(message: str, data: bytes) -> Problem:
     line, column = position.groups() if position else (None, None)
     where = f"line {line or len(lines)}, column {column or len(lines[-1]) + 1}"
     what = _POSITION.sub("", message)
+    if what == "Cannot overwrite a value":
+        return Problem(said=f"{where}: this key is given twice. Remove one of the two lines.")
+    if twice := _DECLARED_TWICE.match(what):
+        section = ".".join(_QUOTED.findall(twice[1]))
+        return Problem(said=f"{where}: section [{section}] is given twice. Put all its lines under one heading.")
     return Problem(
         said=f'{where}: not valid TOML ({what}); quantities, names and networks are quoted, such as k = "120 kN/m", '
         f"and no key or section is given twice."

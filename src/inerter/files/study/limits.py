@@ -192,9 +192,7 @@ def _unit(study: Study, of: str) -> str:
     known = [*study.own_indices, *index_names()]
     if of not in known:
         expected = f"an index ({some(known)}), or {_STIFFNESS} of a strut"
-        raise EntryError(
-            got=quote_value(of), fault="nothing that can be limited", expected=expected, hint=nearest(of, known)
-        )
+        raise EntryError(got=quote_value(of), fault="cannot be limited", expected=expected, hint=nearest(of, known))
     return study.unit(of)
 
 

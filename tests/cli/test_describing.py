@@ -32,6 +32,8 @@ def test_every_key_is_told_by_its_place_and_by_its_end(capsys):
             if key.place == place:
                 assert key.sentence in words(out)
                 assert key.unit in out
+        assert "(," not in out
+        assert "()" not in out
         name = place.rpartition(".")[2]
         if name != ANY_NAME:
             assert place in {key.place for key in find_keys(KEYS, name)}
@@ -60,7 +62,9 @@ def test_a_section_is_told_with_its_keys(capsys):
 
 @pytest.mark.parametrize("word", [*INDICES, "norm", "half-car", "spring"])
 def test_words_that_keys_take_are_told_too(word, capsys):
-    assert told(capsys, word).startswith(f"{word}, a")
+    out = told(capsys, word)
+    assert out.startswith(f"{word} (")
+    assert f"{word}:" not in out
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from inspect import getdoc
 from textwrap import wrap
 from typing import Any
 
-from inerter.errors import StudyError, with_article
+from inerter.errors import StudyError
 from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.suggest import nearest
@@ -67,7 +67,7 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
 
 def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:
     """Lines on a key, and on the keys that it holds if it is a section."""
-    where = f"{key.place}, of a {key.of}" if key.of else key.place
+    where = f"{key.place} ({key.of})" if key.of else key.place
     yield from _wrap_text(f"{where}: {key.sentence}", "")
     if key.unit:
         others = f", or another of its kind such as {' or '.join(key.other_units[:2])}" if key.other_units else ""
@@ -91,7 +91,7 @@ def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:
 def _row(what: str, name: str, row: Any) -> Iterator[str]:
     """Lines on a registry entry that is a possible value of a key."""
     sentence = " ".join((getdoc(row) or "").partition("\n\n")[0].split())
-    yield from _wrap_text(f"{name}, {with_article(what)}: {sentence}", "")
+    yield from _wrap_text(f"{name} ({what}): {sentence.removeprefix(f'{name}: ')}", "")
 
 
 def _table(keys: Sequence[Key]) -> Iterator[str]:

@@ -57,7 +57,7 @@ Searching = Annotated[SearchOptions, Parameter(name="*")]
   inerter run examples/quarter-car.toml
   inerter run sweep.toml -o sweep -j 2
   inerter run sweep.toml -o sweep --resume    after an interruption
-  inerter run sweep.toml --scheduler tcp://node1:8786    on a dask cluster"""
+  inerter run sweep.toml --scheduler tcp://node1:8786    on a Dask cluster"""
 )
 def run(
     study: Path,
@@ -158,7 +158,7 @@ def new(
     Parameters
     ----------
     vehicle
-        Its model; a quarter car if left out, and inerter explain vehicle.model has all.
+        Vehicle model; default: quarter-car. All models: inerter explain vehicle.model
     """
     from inerter.cli.new import new as command
 
@@ -177,7 +177,8 @@ def explain(key: str | None = None, /) -> None:
     Parameters
     ----------
     key
-        Its place, such as road.speed, or the end of that; a section; a word such as J1. All keys if left out.
+        A key such as road.speed, or the last part of it; a section such as road; or a name such as J1 or
+        quarter-car. Default: all keys.
     """
     from inerter.cli.describing import explain as command
 
@@ -413,8 +414,8 @@ def plot(
 def docs(site: Path | None = None, /) -> None:
     """Open the documentation in the browser, or say how to get it.
 
-    The site with all pages, the reference and the gallery takes 65 MB, more than
-    the package itself, and so it is not part of it.
+    The site with all pages, the reference and the gallery takes 70 MB, and so
+    it is not part of the package.
 
     Parameters
     ----------

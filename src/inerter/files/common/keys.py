@@ -60,7 +60,9 @@ def _merge_equal_keys(keys: Iterable[Key]) -> list[Key]:
         alike.setdefault((key.place, key.sentence, key.unit), []).append(key)
     return [
         replace(
-            same[0], of=" or ".join(key.of for key in same), words=tuple(word for key in same for word in key.words)
+            same[0],
+            of=", ".join(dict.fromkeys(key.of for key in same if key.of)),
+            words=tuple(word for key in same for word in key.words),
         )
         for same in alike.values()
     ]

@@ -120,7 +120,7 @@ def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:
             section(
                 name,
                 EXPRESSION,
-                f"Network in the mount {name}.",
+                f'Network of the mount "{name}".',
                 f'{name} = "k | c"',
                 REQUIRED if mount.needed else mount.network,
             )

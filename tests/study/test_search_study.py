@@ -262,7 +262,7 @@ def test_the_command_writes_tables_drawings_and_a_page(tmp_path: Path, capsys: p
     assert call(command) == 0
     told = capsys.readouterr().out
     assert max(map(len, told.splitlines())) <= 80
-    for words in ("best network for each number of elements", "c1 - b1", "have no value", "On S1"):
+    for words in ("best network for each number of elements", "c1 - b1", "have no value", "Gain on S1"):
         assert words in told
     names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}
     assert names >= {"search.csv", "report.html", "figures/frontier.svg", "figures/networks-S-J1.svg"}

@@ -48,7 +48,7 @@ def _warning_lines(found: IdentificationResult) -> Iterator[str]:
     said = list(cause_texts(found))
     if said:
         yield ""
-        yield "possible causes, most likely first"
+        yield "Possible causes, most likely first"
     for number, (sentence, share, values, remedy) in enumerate(said, 1):
         yield from wrap(
             f"{sentence}: explains {share}.",
@@ -107,7 +107,7 @@ def processing_notes(found: IdentificationResult, reading: Reading, comparison: 
 def _record_lines(found: IdentificationResult) -> Iterator[str]:
     yield from wrap(f"{found.title}: {model_title(found)}", WIDTH)
     yield ""
-    yield "records"
+    yield "Records"
     for reading, comparison in zip(found.readings, found.fit.comparisons, strict=True):
         yield from wrap(f"  {reading.used.source}: {sampling_summary(reading)}", WIDTH, subsequent_indent="    ")
         for sentence in processing_notes(found, reading, comparison):
@@ -138,7 +138,7 @@ def limitation_sentences(found: IdentificationResult) -> Iterator[str]:
 def _identifiability_lines(found: IdentificationResult) -> Iterator[str]:
     said = [verdict.sentence for verdict in found.fit.identifiable.values() if not verdict.plain]
     if said:
-        yield "what is identified, and what is not"
+        yield "Identifiability"
     for sentence in said:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")
 
@@ -165,6 +165,6 @@ def whiteness_sentence(comparison: RecordFit) -> str:
 
 def _experiment_lines(found: IdentificationResult) -> Iterator[str]:
     if found.fit.next_experiment:
-        yield "next experiment"
+        yield "Next experiment"
     for sentence in found.fit.next_experiment:
         yield from wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="    ")

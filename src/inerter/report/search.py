@@ -27,7 +27,7 @@ from inerter.files.study.search_tables import (
     real_networks_table,
 )
 from inerter.files.study.searching import TABLE, LayoutFront, LayoutSearch, StudySearch, tables_of
-from inerter.formatting import capital, format_list, format_percent, format_quantity
+from inerter.formatting import capital, format_list, format_percent, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
@@ -73,8 +73,8 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
         against = f", {format_percent(gain)} on {found.study.baseline}" if isfinite(gain) else ""
         near = ""
         if smaller.n_elements < best.n_elements:
-            behind = format_percent(-improvement(smaller.value, best.value))
-            near = f"; with {_elements(smaller.n_elements)}, {smaller.layout} is {behind} from that"
+            behind = format_percent_size(-improvement(smaller.value, best.value))
+            near = f"; with {_elements(smaller.n_elements)}, {smaller.layout} is only {behind} worse"
         yield (
             f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
             f"{format_quantity(best.value, best.unit)}{against}{near}."

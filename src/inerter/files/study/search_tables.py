@@ -49,7 +49,9 @@ def inerters_table(study: Study, one: LayoutSearch) -> Table:
 def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tuple[int, FoundNetwork]]) -> Table:
     is_compared = isfinite(one.baseline)
     heads = [
-        *columns(capital(counted), one.index, "Gain", *([f"On {study.baseline}"] if is_compared else [])),
+        *columns(
+            capital(counted), one.index, "Gain on previous", *([f"Gain on {study.baseline}"] if is_compared else [])
+        ),
         Column("Network", prose=True),
     ]
     rows, before = [], nan

@@ -37,3 +37,4 @@ for name, design in best.items():
     print(name, it.evaluate(design, comfort, it.Norm()).value)
 gain, phase = it.plot_bode(best, comfort)  # from the road under both axles, the rear one delayed
 gain.set_xlim(0.3, 30)
+phase.set(xlim=(0.3, 30), ylim=(-1500, 200))

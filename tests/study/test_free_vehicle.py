@@ -120,6 +120,13 @@ def test_what_cannot_be_is_said(tmp_path: Path, vehicle: dict[str, str], setting
     assert said in str(error.value)
 
 
+def test_an_element_cannot_have_the_name_of_a_free_number_of_the_vehicle(tmp_path: Path) -> None:
+    """A value is given by name: in results, and in what is fixed to them."""
+    text = text_of(FREE).replace('b = "30 kg"', 'unsprung_mass = "30 kg"').replace("c | b", "c | unsprung_mass")
+    with pytest.raises(InerterError, match=r"vehicle\.unsprung_mass: free, and there is an element unsprung_mass too"):
+        load_text(tmp_path, text)
+
+
 def test_a_distance_and_a_simulation_have_one_value(tmp_path: Path) -> None:
     path = tmp_path / "half.toml"
     half = EXAMPLES / "half-car.toml"

@@ -160,7 +160,11 @@ def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]
 def _free_value_problems(study: Study) -> Iterator[Problem]:
     named = elements_used(study)
     used = [name for name in named if name in study.free_networks or isinstance(study.elements[name].value, Free)]
-    used += free_in_vehicle(study)
+    in_vehicle = free_in_vehicle(study)
+    for name in in_vehicle.keys() & study.elements.keys():
+        keys = ("vehicle", *in_vehicle[name][0].key.split("."))
+        yield at(keys, fault=f"free, and there is an element {name} too", expected="another name of the element")
+    used += in_vehicle
     if used and study.optimise is None:
         method = quote_value(methods_that(searches)[0])
         yield at(

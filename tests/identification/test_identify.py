@@ -1,5 +1,6 @@
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +16,8 @@ from inerter.identification.initial_estimate import chain_of, guess_of
 from inerter.identification.noise import noise_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.residual_tests import portmanteau
+from inerter.identification.statements.findings import FitFinding
+from inerter.identification.verdicts import suggestions
 from inerter.systems.piecewise import piecewise
 
 QUIET = {"encoder_noise": 0.0, "encoder_resolution": 0.0, "force_noise": 0.0, "force_resolution": 0.0}
@@ -41,6 +44,19 @@ def test_the_experiment_of_the_paper(paper):
     assert not paper.identifiable["gap"]
     assert "not identifiable: only an upper bound, " in paper.identifiable["gap"].sentence
     assert any(sentence.startswith("gap:") for sentence in paper.next_experiment)
+
+
+@pytest.mark.campaign
+def test_no_motion_is_proposed_for_a_gap_within_a_step_of_the_encoder(paper):
+    """An encoder of 1 um cannot show a gap that is crossed within 1 um, whatever the motion."""
+    space = SimpleNamespace(names=("gap",), kinds=(it.Gap,))
+    found = {}
+    for upper in (0.4e-6, 0.6e-6):
+        parameters = {"gap": replace(paper.parameters["gap"], interval=(0.0, upper))}
+        (found[upper],) = suggestions(space, parameters, paper.identifiable, paper.comparisons)
+    assert [finding.kind for finding in found.values()] == [FitFinding.BELOW_RESOLUTION, FitFinding.FASTER_REVERSALS]
+    assert "less than a step of the displacement (1 um)" in found[0.4e-6].sentence
+    assert "crossing 1.2 um takes several samples" in found[0.6e-6].sentence
 
 
 @pytest.mark.campaign

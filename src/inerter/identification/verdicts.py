@@ -13,6 +13,7 @@ from inerter.identification.statements.findings import FitFinding
 from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.networks.elements.roles import LinearRole
 from inerter.records.finding import Finding
+from inerter.records.smoothing import resolution
 from inerter.statements import Severity
 
 _WIDE = 3.0  # ends of an interval this far apart, as a ratio, give an order of magnitude only
@@ -52,6 +53,7 @@ def suggestions(
     """The recommended experiment for each parameter that the records do not identify."""
     peak = max(float(np.abs(c.record.force).max()) for c in comparisons)
     travel = max(0.5 * float(np.ptp(c.record.displacement)) for c in comparisons)
+    step = min(resolution(c.record.displacement) for c in comparisons)
     fastest = max(c.experiment.motion.highest for c in comparisons)
     limit = min((c.record.force_range for c in comparisons if c.record.force_range is not None), default=0.0)
     motion = {"fastest": fastest, "peak": peak, "limit": limit if limit > _ROOM * peak else None}
@@ -63,8 +65,11 @@ def suggestions(
             yield Finding(FitFinding.BREAK_AWAY, Severity.INFO, name, {**motion, "held": held})
             continue
         if kind.linear is LinearRole.CLOSED:
-            width = {"width": 2.0 * parameters[name].interval[1]}
-            yield Finding(FitFinding.FASTER_REVERSALS, Severity.INFO, name, {**motion, **width})
+            width = 2.0 * parameters[name].interval[1]
+            if width < step:
+                yield Finding(FitFinding.BELOW_RESOLUTION, Severity.INFO, name, {"width": width, "step": step})
+            else:
+                yield Finding(FitFinding.FASTER_REVERSALS, Severity.INFO, name, {**motion, "width": width})
         elif kind.linear is LinearRole.OPEN:
             yield Finding(FitFinding.SLOW_COSINE, Severity.INFO, name, {"travel": max(travel, 1e-3)})
         elif kind.linear is LinearRole.MASS:

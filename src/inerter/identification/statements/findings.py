@@ -25,6 +25,7 @@ class FitFinding(StrEnum):
     INCLUDED = "included"
     # recommended experiments
     FASTER_REVERSALS = "faster-reversals"
+    BELOW_RESOLUTION = "below-resolution"
     SLOW_COSINE = "slow-cosine"
     LARGER_ACCELERATIONS = "larger-accelerations"
     HIGHER_FREQUENCIES = "higher-frequencies"
@@ -133,6 +134,13 @@ def _faster_reversals_text(f: Finding) -> Text:
         f"{f.about}: a faster motion with frequent force reversals (present motion: up to "
         f"{format_quantity(n['fastest'], 'Hz', 3)} and {format_quantity(n['peak'], 'N', 3)}{_force_margin_text(f)}), "
         f"sampled so that crossing {format_quantity(n['width'], 'm')} takes several samples.",
+    )
+
+
+def _below_resolution_text(f: Finding) -> Text:
+    return (
+        f"{f.about}: the whole backlash is below {format_quantity(f.numbers['width'], 'm')}, less than a step of the "
+        f"displacement ({format_quantity(f.numbers['step'], 'm', 3)}), and may be taken as zero.",
     )
 
 
@@ -267,6 +275,7 @@ _TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
     FitFinding.MOVING_MASS: _moving_mass_text,
     FitFinding.INCLUDED: _included_uncertainty_text,
     FitFinding.FASTER_REVERSALS: _faster_reversals_text,
+    FitFinding.BELOW_RESOLUTION: _below_resolution_text,
     FitFinding.SLOW_COSINE: _slow_cosine_text,
     FitFinding.LARGER_ACCELERATIONS: _larger_accelerations_text,
     FitFinding.HIGHER_FREQUENCIES: _higher_frequencies_text,

@@ -48,11 +48,11 @@ _MORE = 400  # roads on which the first-order change is averaged, which is quick
 class ExpectedValue(FormerMethodNames):
     """Simulation of the nonlinear design, with friction and gaps: on random roads, or under sinusoidal forces.
 
-    Each of `realisations` roads (8 by default), which `seed` decides, is a multisine of eq. (17), 0.1 to 1000 Hz; the
-    design settles on it, and mean squares are taken over the next period of 10 s. The value is made of the roots of
-    their means over the roads, `samples` of those on each. A design that remembers the road for longer than a period,
-    as one that is hardly damped, gets roads of 40, 160 or 640 s, with lines as much closer; `period` [s] sets their
-    length.
+    Each of `realisations` roads (8 by default), which `seed` decides, is a multisine, 0.1 to 1000 Hz (eq. (17) of the
+    source). The design settles on it, and mean squares are taken over the next period of 10 s. The value is made of the
+    roots of their means over the roads, `samples` of those on each. A design that remembers the road for longer than a
+    period, as one that is hardly damped, gets roads of 40, 160 or 640 s, with lines as much closer; `period` [s] sets
+    their length.
     Where no such road shows a steady state, as with a strut that sticks on an undamped tyre, the value is nan. With
     `relative_error`, roads are added, from 8 to 1000, until the standard error is that part of the value. Designs are
     driven over the same roads, so that differences between them are known better than either (see `compare`).

@@ -50,6 +50,9 @@ class H2:
 def h2_norm(system: LinearSystem, pade_order: int | None = None) -> float:
     """Root-mean-square response to unit white noise on every source, over all outputs together.
 
+    Unit noise has the two-sided density 1 per Hz: the squared norm is the integral of |G(j omega)|^2 over omega from
+    -infinity to infinity, over 2 pi.
+
     Inputs that share a source with different delays are treated exactly, or with a Pade approximant of `pade_order`
     for each delay between one arrival and the next. Infinite if a motion that does not decay is excited and seen, or
     if white noise passes straight to an output; `h2` says which.

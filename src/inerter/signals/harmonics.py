@@ -121,8 +121,8 @@ def multisine(road: Road, seed: int, lowest: float = 0.1, highest: float = 1000.
     """Random-phase multisine of a road: harmonics `lowest`, 2 `lowest`, ... up to `highest` [Hz].
 
     Phases are independent and uniform; the amplitudes A_i = sqrt(8 pi kappa V d_omega) / omega_i give every band the
-    power of `road`. Repeats after
-    1 / lowest seconds. Source: Wang and Su (2008), eq. (17), whose root must end before the division.
+    power of `road`. Repeats after 1 / lowest seconds. Source: Wang and Su (2008), eq. (17), with the root over the
+    numerator alone.
 
     Raises `SignalError` unless 0 < lowest <= highest and `seed` is a non-negative integer.
 

@@ -58,7 +58,7 @@ class Origin:
 
 @dataclass(frozen=True, eq=False)
 class LinearSystem:
-    """A linear system with named states, inputs and outputs.
+    """A linear system x' = A x + B u, y = C x + D u, with named states, inputs and outputs.
 
     `A` (n, n), `B` (n, m), `C` (p, n), `D` (p, m). Input j is the signal `sources[j]` delayed by `delays[j]` seconds;
     inputs of the same source are one signal that arrives at several places, as a road does at the axles. By default

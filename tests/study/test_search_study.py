@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -73,6 +74,46 @@ def test_one_damper_beside_the_spring_is_the_baseline(found: StudySearch) -> Non
     for one in found.searches:
         (alone,) = [each for each in one.result.ranking if each.layout == "c1"]
         assert one.baseline == pytest.approx(alone.value, rel=1e-9)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("baseline", ["k | c1", "k | c"], ids=["fixed", "free"])
+def test_networks_are_not_compared_with_a_baseline_that_breaks_the_limits(tmp_path: Path, baseline: str) -> None:
+    """A damper of 900 N s/m, or of 1.2 kN s/m at most, lets the strut travel farther than the limit."""
+    elements = (
+        'k = "20 kN/m"\nc1 = "900 N s/m"\nc = { from = "100 N s/m", to = "1.2 kN s/m" }\n'
+        'any = { network = 1, dampers = { from = "10 N s/m", to = "100 kN s/m" } }'
+    )
+    asked = 'indices = ["J1"]\noptimise = "norm"\nbaseline = "S1"\n'
+    limit = 'subject_to = { suspension-travel = { at_most = "5 mm" } }'
+    study = load_text(tmp_path, text(f"{asked}{limit}", elements, f'S1 = "{baseline}"\nS = "k | any"'))
+    ((one,), (fixed,)) = (found := search_study(study, tmp_path / "out")).searches, found.fixed
+    assert fixed.kind == "infeasible"
+    assert math.isnan(one.baseline)
+    assert one.result.ranking[0].layout == "c1"
+    (row,) = rows_of(found.folder)
+    assert (row["improvement_percent"], row["status"]) == ("", "ok")
+
+
+@pytest.mark.campaign
+def test_a_network_that_keeps_no_limit_with_real_inerters_has_no_value_with_them(tmp_path: Path) -> None:
+    """The limit on J3 lies just above the best value with an ideal inerter, which a soft shaft spoils."""
+    elements = (
+        'k = "120 kN/m"\nany = { network = 2, at_least = 2, dampers = { from = "10 N s/m", to = "1 MN s/m" }, '
+        'inerters = { from = "10 g", to = "100 t" } }'
+    )
+    layouts = 'S = "k | any"'
+    best = it.search(
+        load_text(tmp_path, text(ASK, elements, layouts)).design("S"), it.TyreLoad(it.Road(5e-7, 25.0)), it.Norm()
+    )
+    limit = f'subject_to = {{ J3 = {{ at_most = "{1.0001 * best.ranking[0].value!r} N" }} }}'
+    device = 'real_inerters = { friction = "0 N", stiffness = "100 kN/m", methods = ["norm"], best = 1 }'
+    asked = f'indices = ["J1"]\noptimise = "norm"\n{device}\n{limit}'
+    found = search_study(load_text(tmp_path, text(asked, elements, layouts)), tmp_path / "out")
+    (one,) = found.searches
+    (real,) = one.real
+    assert one.result.ranking[0].status.ok
+    assert (real.status, math.isnan(real.value)) == ("infeasible", True)
 
 
 def test_a_search_cut_short_resumes_to_the_same_bytes(study: Study, tmp_path: Path) -> None:

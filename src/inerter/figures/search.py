@@ -130,7 +130,7 @@ def _name_networks(one: LayoutFront, pair: tuple[int, int], factors: NDArray[np.
 def _fixed_values(found: StudySearch, layout: str, names: list[str]) -> list[float]:
     """Indices of a layout without a free network at its best design in the first of them."""
     own = next(each for each in found.fixed if each.layout == layout and each.index == names[0])
-    values = own.values.get(found.study.evaluate[0], {})
+    values = own.feasible_values(found.study.evaluate[0])
     return [values.get(name, nan) for name in names]
 
 

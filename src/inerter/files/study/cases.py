@@ -132,6 +132,10 @@ class Outcome(PartResult):
         """Case to which the outcome belongs."""
         return Case(self.layout, self.index, self.point)
 
+    def feasible_values(self, method: str) -> dict[str, float]:
+        """The indices of this design by a method; empty where no design satisfies the limits."""
+        return {} if self.status.get(method) == StatusKind.INFEASIBLE.value else self.values.get(method, {})
+
     @property
     def kind(self) -> str:
         """The kind of its status: the first of all methods that is not ok."""

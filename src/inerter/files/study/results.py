@@ -25,7 +25,7 @@ from inerter.methods.method import Estimate
 from inerter.methods.registry import is_blind
 
 Array = NDArray[np.float64]
-_OK, _INFEASIBLE = StatusKind.OK.value, StatusKind.INFEASIBLE.value
+_OK = StatusKind.OK.value
 
 
 class DatasetBuilder:
@@ -118,8 +118,8 @@ class DatasetBuilder:
         best = False  # of infinite values none is
         for m, method in enumerate(self.study.evaluate):
             values = outcome.values.get(method, {})
-            value = values.get(index, np.nan)
-            arrays["value"][number, m] = np.nan if outcome.status.get(method) == _INFEASIBLE else value
+            value = outcome.feasible_values(method).get(index, np.nan)
+            arrays["value"][number, m] = value
             arrays["other_value"][number, m] = [values.get(other, np.nan) for other in self.study.indices]
             bounds = outcome.error_bounds.get(method, {})
             arrays["error_bound"][number, m] = bounds.get(index, np.nan)

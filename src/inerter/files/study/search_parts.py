@@ -11,6 +11,7 @@ from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.study import Study
+from inerter.files.study.tasks import best_design
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.registry import with_decisive_method
 from inerter.network_search.fronts import FrontPlan, FrontScale, FrontTask, NetworkPoints, front_group
@@ -169,17 +170,16 @@ class RealPart(StudyPart["RealResult"]):
         """The index with the values of the ideal network, and with the best values of the real one."""
         method = study.method(self.method, threads)
         if self.found is None:
-            outcome = designs[Case(str(study.baseline), self.index)]
-            design = study.design(str(study.baseline))
-            design = design.with_values(outcome.parameters) if outcome.parameters else design
+            design = best_design(study, designs, str(study.baseline), self.index)
             estimate = estimate_of(design, study.resolve_index(self.index, str(study.baseline)), method)
             return self._result(value=estimate.value, error=estimate.standard_error, status=estimate.status)
         assert study.real_inerters is not None
         real, friction = study.real_inerters.shaft, study.real_inerters.friction
         kept = estimate_of(with_real_inerters(self.found, real, friction), self.found.plan.index, method)
         best = optimise_with_real_inerters(self.found, method, friction=friction, real=real)
+        is_feasible = best.status.kind is not StatusKind.INFEASIBLE
         return self._result(
-            value=best.value,
+            value=best.value if is_feasible else nan,
             error=best.estimate.standard_error,
             status=with_decisive_method(best.status, self.method),
             kept=kept.value,

@@ -90,7 +90,7 @@ def fixed_table(found: StudySearch) -> Table | None:
     for layout in dict.fromkeys(one.layout for one in found.fixed):
         own = {one.index: one for one in found.fixed if one.layout == layout}
         values = [
-            Quantity(own[index].values.get(found.study.evaluate[0], {}).get(index, nan), units[index]) for index in own
+            Quantity(own[index].feasible_values(found.study.evaluate[0]).get(index, nan), units[index]) for index in own
         ]
         doubts = [f"{index}: {one.status_text}" for index, one in own.items() if not one.ok]
         rows.append(Row(cells(layout, *values), status="; ".join(doubts)))

@@ -297,7 +297,7 @@ def _searches(
             one for one in done.values() if isinstance(one, GroupResult) and (one.layout, one.index) == (layout, index)
         ]
         base = done.get(Case(study.baseline or "", index))
-        baseline = base.values[study.evaluate[0]].get(index, nan) if isinstance(base, Outcome) and base.values else nan
+        baseline = base.feasible_values(study.evaluate[0]).get(index, nan) if isinstance(base, Outcome) else nan
         heading = f"{study.index(index).title} ({index}){f', {layout}' if several else ''}"
         result = collect_results(plan, [network for one in own for network in one.optima()])
         yield LayoutSearch(layout, index, heading, result, baseline)

@@ -150,7 +150,7 @@ def test_a_cluster_that_cannot_be_is_told(
 def test_no_scheduler_answers(tmp_path: Path) -> None:
     words = ("-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:9")
     errors = done(inerter("run", EXAMPLES / "quarter-car.toml", *words), 1)
-    assert "no scheduler of dask answers at tcp://127.0.0.1:9" in errors
+    assert "no Dask scheduler answers at tcp://127.0.0.1:9" in errors
     assert "connecting to the scheduler" in errors
 
 

@@ -53,7 +53,9 @@ def cluster_executor(address: str | None, file: Path | None, tls: Mapping[str, s
     try:
         import distributed
     except ImportError:
-        raise WorkError('for a cluster install dask too: pip install "inerter[cluster]"') from None
+        raise WorkError(
+            'A cluster needs Dask, which is not installed: pip install "inerter[cluster]", then try again.'
+        ) from None
     try:
         distributed.comm.get_address_host_port(address or "host:1")
     except ValueError as error:
@@ -69,7 +71,7 @@ def cluster_executor(address: str | None, file: Path | None, tls: Mapping[str, s
         client = distributed.Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
     except Exception as error:  # of sockets, of TLS, of addresses that are none
         raise WorkError(
-            f"no scheduler of dask answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
+            f"no Dask scheduler answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
             "is this its address, and does it want TLS?"
         ) from None
     with client:

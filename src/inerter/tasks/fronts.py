@@ -100,7 +100,7 @@ class Fronts(Task[FrontAnswer]):
         if study.sweeps:
             yield at(place, fault="given together with a sweep", expected="one of the two")
         if study.optimise is None:
-            yield at(place, fault="nothing is optimised", expected="optimise, or no trade_off")
+            yield at(place, fault="nothing is optimised", expected='optimise = "norm", or no trade_off')
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Indices of the trade-off, by the heading of the report."""

@@ -151,7 +151,7 @@ def limits_of(
     limits: list[StudyLimit] = []
     problems: list[Problem] = []
     if entries and study.optimise is None:
-        problems.append(at(_PLACE, fault="nothing is optimised", expected="optimise, or no limits"))
+        problems.append(at(_PLACE, fault="nothing is optimised", expected='optimise = "norm", or no subject_to'))
     for of, sides in entries.items():
         with collect_problem(problems, (*_PLACE, of)):
             if not sides or ("equal" in sides and len(sides) > 1):

@@ -52,6 +52,8 @@ def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str,
     assert not refuses_gaps(by["inerter_gap"]["method"])
     for one in by.values():
         assert one["sentence"].endswith(".")
+        words = one["parameter"] if one["is_present"] else one["sentence"].partition(" of ")[0]
+        assert one["short"] == "" or one["short"].casefold().startswith(words.casefold())
         assert (one["value"] is None) <= (one["status"] != "ok")
 
 

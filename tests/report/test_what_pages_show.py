@@ -322,8 +322,8 @@ def test_a_reason_for_no_budget_is_told_once_for_all_indices(study, reasons):
         (True, [20.0, 70.0], "up to 20 kg"),
         (True, [5.0, 20.0], "from 5 kg to 20 kg"),
         (True, [5.0, 20.0, 70.0], "from 5 kg to 20 kg"),
-        (False, [20.0], "from 20 kg on"),
-        (False, [5.0, 20.0], "from 20 kg on"),
+        (False, [20.0], "above 20 kg"),
+        (False, [5.0, 20.0], "above 20 kg"),
         (False, [20.0, 70.0], "from 20 kg to 70 kg"),
     ],
 )

@@ -19,6 +19,8 @@ from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.identification.sections import CHOOSE
 from inerter.files.study import KIND
+from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
+from inerter.formatting import capital
 from inerter.identification.models import MODELS
 from inerter.indices.registry import INDICES
 from inerter.methods.linear import CONVENTIONS
@@ -71,6 +73,7 @@ def about() -> dict[str, Any]:
             for key, kind in EXPORTS.items()
             if kind.is_file
         ],
+        "export_note": f"{capital(WITHOUT_CONDITIONS)}.",
         "models": [*MODELS, CHOOSE],
         "examples": list(examples()),
     }

@@ -14,7 +14,7 @@ from inerter.exports.export import check_suffix, export_contents
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import ExportSpec
 from inerter.files.common.folder import check_single, single
-from inerter.files.study.chosen_design import chosen_design
+from inerter.files.study.chosen_design import WITHOUT_CONDITIONS, chosen_design
 
 _BY = "export"
 
@@ -64,4 +64,4 @@ def export(
             draft.write_bytes(contents)
     say(f"{kind.description}: {path}")
     if design.study.conditions:
-        say("the vehicle and road are those of the file itself, not of one of its conditions")
+        say(WITHOUT_CONDITIONS)

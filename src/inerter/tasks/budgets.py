@@ -227,7 +227,7 @@ def range_text(value: float, unit: str, error: float, crossings: Sequence[float]
     if beyond:
         other = format_quantity(max(beyond) if at_most else min(beyond), unit)
         return f"from {other} to {end}" if at_most else f"from {end} to {other}"
-    return f"up to {end}" if at_most else f"from {end} on"
+    return f"up to {end}" if at_most else f"above {end}"
 
 
 def _remark(found: BudgetAnswer) -> str:

@@ -69,7 +69,7 @@ class BreakEvenMargin:
     interval: tuple[float, float] | None
     status: str
     message: str
-    short: str  # "f up to 414 +- 18 N"; empty without a value
+    short: str  # "f up to 414 +- 18 N", "friction up to 390 +- 17 N" of one of a real inerter; empty without a value
     sentence: str
 
 
@@ -130,6 +130,7 @@ class _Trial:
 
     parameter: str
     words: str
+    brief: str
     design: Vehicle
     is_present: bool
 
@@ -176,28 +177,29 @@ def _trials(asked: MarginRequest) -> Iterator[_Trial]:
     labels = [label for label, e in own.items() if e.may_vanish or label in compliant or label in budgets]
     for label in labels:
         what = "stiffness" if label in compliant else own[label].key
-        yield _Trial(label, f"{what} {label}", asked.design, is_present=True)
+        yield _Trial(label, f"{what} {label}", label, asked.design, is_present=True)
     present = {own[label].key for label in labels}
     inerters = [label for label, element in own.items() if isinstance(element, Inerter)]
     if not inerters:
         return
     real, of = RealInerter(), format_list(inerters)
     if Friction.key not in present:
-        yield _hypothetical(asked, own, Friction(0.0), f"friction of inerter {of}", lambda b, new: b | new)
+        yield _hypothetical(asked, own, Friction(0.0), "friction", f"inerter {of}", lambda b, new: b | new)
     if not compliant:
         shaft, damping = Spring(real.stiffness), Damper(real.damping)
         yield _hypothetical(
-            asked, own, shaft, f"stiffness of the shaft of inerter {of}", lambda b, new: (new | damping) - b
+            asked, own, shaft, "stiffness", f"the shaft of inerter {of}", lambda b, new: (new | damping) - b
         )
     if Gap.key not in present:
-        yield _hypothetical(asked, own, Gap(0.0), f"backlash of inerter {of}", lambda b, new: new - b)
+        yield _hypothetical(asked, own, Gap(0.0), "backlash", f"inerter {of}", lambda b, new: new - b)
 
 
 def _hypothetical(
     asked: MarginRequest,
     own: Mapping[str, Element],
     element: Element,
-    words: str,
+    what: str,
+    of: str,
     join: Callable[[Element, Element], Network],
 ) -> _Trial:
     """Trial with an element of a real inerter joined to each inerter of the struts."""
@@ -210,7 +212,7 @@ def _hypothetical(
         return join(part, new) if isinstance(part, Inerter) and part.label in own else part
 
     design = with_networks(asked.design, lambda network: map_elements(network, change))
-    return _Trial(name, words, design, is_present=False)
+    return _Trial(name, f"{what} of {of}", what, design, is_present=False)
 
 
 def compliant_springs(network: Network) -> set[str]:
@@ -263,7 +265,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     if known:
         ends = [crossing.value for crossing in found.crossings]
         end = range_text(found.value, found.unit, found.standard_error, ends, at_most=element.may_vanish)
-        short = f"{trial.parameter} {end}"
+        short = f"{trial.brief} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
     else:
         end = found.status.message.replace("the design is better", who).rstrip(".")

@@ -19,6 +19,8 @@ from inerter.files.study.running import DATASET, RESOLVED
 from inerter.files.study.study import Study
 from inerter.vehicle.vehicle import Vehicle
 
+WITHOUT_CONDITIONS = "the vehicle and road are those of the file itself, not of one of its conditions"
+
 
 @dataclass(frozen=True, eq=False)
 class ChosenDesign:

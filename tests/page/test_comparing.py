@@ -25,7 +25,8 @@ STUDY = study_text(
 
 
 def _choose_by_mouse(visitor: Visitor, name: str) -> None:
-    visitor.page.get_by_role("group", name="Designs to compare").get_by_role("button", name=name).click()
+    group = visitor.page.get_by_role("group", name="Designs to compare")
+    group.get_by_role("button", name=name, exact=True).click()
 
 
 def _choose_by_keyboard(visitor: Visitor, name: str) -> None:
@@ -118,6 +119,22 @@ def test_designs_stand_side_by_side(way: str, count: int, visitor: Visitor, tmp_
             assert [cell["best"] for cell in row] == [cell["value"] == pytest.approx(least, rel=1e-9) for cell in row]
     choose(visitor, names[-1])
     _compared(visitor, ["S3", *(name for name in names[:-1] if name != "S3")])
+
+
+def test_designs_that_are_taken_out_stay_out(visitor: Visitor) -> None:
+    """The last one too: nothing that nobody chose comes in place of it."""
+    page = visitor.page
+    visitor.settled()
+    page.click("#tab-compare")
+    _compared(visitor, ["S1", "S3e"])
+    pressed = page.get_by_role("group", name="Designs to compare").locator("[aria-pressed=true]")
+    for left in (["S1"], []):
+        pressed.last.click()
+        page.locator("#tab-panel", has_text="Choose two to four of them.").wait_for()
+        assert pressed.all_inner_texts() == left
+    _choose_by_mouse(visitor, "S2")
+    _choose_by_mouse(visitor, "S3")
+    _compared(visitor, ["S2", "S3"])
 
 
 def test_kept_designs_of_other_studies_are_compared_with_what_tells_them_apart(

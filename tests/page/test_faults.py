@@ -288,22 +288,25 @@ def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, nam
     page.fill("#network-text", f"k | {name}")
     page.wait_for_selector("#network-problem")
     page.keyboard.press("Control+z")
-    for spoilt in (
+    spoilt = (
         text.replace("[layouts]", f'[layouts]\n{quoted} = "k | c"'),
         text.replace("[elements]", f"[elements]\n{quoted} = {quoted}"),
         text.replace('speed = "25 m/s"', f"speed = {quoted}"),
         f"[{quoted}]\n{quoted} = {quoted}\n" + text,
         f"= {quoted}",
-    ):
-        path = tmp_path / f"{name.replace('/', '_')[:40]}.toml"
-        path.write_text(spoilt)
+    )
+    for number, of in enumerate(spoilt):
+        path = tmp_path / f"spoilt {number} {name.replace('/', '_')[:40]}.toml"
+        path.write_text(of)
         visitor.open(path)
-        page.wait_for_timeout(400)
+        page.locator(".notice", has_text=f"spoilt {number} ").first.wait_for()
+        visitor.drawn()
     (tmp_path / "record.csv").write_text(
         f"time [s],{quoted},force [{name}]\n" + "".join(f"{0.001 * i},{i % 7},{i % 5}\n" for i in range(300))
     )
     visitor.open(tmp_path / "record.csv")
-    page.wait_for_timeout(800)
+    page.locator(".notice", has_text="record.csv", has_not_text="Reading").wait_for()
+    visitor.drawn()
     assert page.evaluate("() => [window.struck, document.querySelectorAll('body img, body svg[onload]').length]") == [
         None,
         0,

@@ -150,6 +150,7 @@ def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors
     opened = title.input_value()
     assert f'title = "{opened}"' in (EXAMPLES / "quarter-car.toml").read_text()
     visitor.settled()
+    assert page.inner_text("footer").startswith("Page")  # the card that had the focus is gone
     page.reload()
     other = visitors(visitor.served, context=page.context).visit().page
     other.locator(".list-row", has_text=opened).click()
@@ -168,3 +169,4 @@ def test_a_record_without_a_study_is_shown_beside_a_quarter_car(
     visitor.page.wait_for_selector("text=noise.csv was read.")
     assert visitor.page.locator("#tab-rig").get_attribute("aria-selected") == "true"
     visitor.page.locator(".records .plot .drawn").wait_for()
+    visitor.wait_for_text("k | c")  # the device is to join the baseline, which has no inerter yet

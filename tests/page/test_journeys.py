@@ -22,6 +22,7 @@ import inerter as it
 from inerter.app.designs import design_of
 from inerter.app.documents import study_from
 from inerter.files.rig.loading import load_rig
+from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
 from inerter.files.study.loading import load_study
 from inerter.kernels import h2
 from inerter.kernels.cache import cache_folder
@@ -370,6 +371,20 @@ def test_a_design_is_exported(visitor: Visitor, tmp_path: Path) -> None:
     page.wait_for_selector(".notice", state="detached")
 
 
+def test_that_conditions_are_not_exported_is_said(visitor: Visitor) -> None:
+    """As the command line says it; and of no study without them."""
+    page = visitor.page
+    menu = page.locator("#export-menu")
+    page.get_by_text("Export", exact=True).click()
+    menu.locator("li").first.wait_for()
+    assert "conditions" not in menu.inner_text()
+    page.keyboard.press("Escape")
+    visitor.open(EXAMPLES / "conditions.toml")
+    page.wait_for_selector("text=conditions.toml is open")
+    page.get_by_text("Export", exact=True).click()
+    assert WITHOUT_CONDITIONS in menu.inner_text().replace("The vehicle", "the vehicle")
+
+
 def test_each_response_is_a_picture(visitor: Visitor, tmp_path: Path) -> None:
     """Of every index of the study, whatever it is called: what the menu asks for, the server has."""
     study = tmp_path / "study.toml"
@@ -444,7 +459,7 @@ def test_a_point_of_a_front_is_taken_into_the_editor(visitor: Visitor) -> None:
     assert job.locator("circle.point").count() == len(points) == 3 * len(fronts)
     layout, point = points[-2]
     job.locator("circle.point").nth(len(points) - 2).press("Enter")
-    page.wait_for_selector(f"[aria-label=Layouts] [aria-pressed=true]:has-text('{layout}')")
+    page.wait_for_selector(f"[aria-label=Layouts] .pick[title='{layout}'][aria-pressed=true]")
     wait_until(lambda: {index: visitor.values()[index] for index in point["values"]} == point["values"])
 
 

@@ -159,6 +159,20 @@ def test_a_plot_is_saved_as_picture_and_numbers(served: Served, visitors: Any, t
         assert values[:, column].tolist() == each["gain"]
 
 
+@pytest.mark.marathon
+def test_each_plot_is_cut_at_its_own_edges(visitor: Visitor) -> None:
+    """Plots that come one after another, of which those of fronts are narrower."""
+    page = visitor.page
+    page.click("#tab-work")
+    for title, points in (("Sweep", "2"), ("Trade-off front", "3")):
+        form = page.locator("form.begin", has_text=title)
+        form.locator("[name=points]").fill(points)
+        form.get_by_role("button", name="Begin").click()
+        page.locator(".job[data-state=done]", has_text=title).locator(".drawn").first.wait_for(timeout=120_000)
+    ids = page.locator("clipPath").evaluate_all("all => all.map(each => each.id)")
+    assert len(set(ids)) == len(ids) >= 2
+
+
 def test_numbers_that_are_not_current_are_not_saved(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()

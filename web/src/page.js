@@ -10,6 +10,7 @@ import { Menu } from "./panels/memory.js";
 import { NetworkPanel } from "./panels/network.js";
 import { ResponsePanel } from "./panels/response.js";
 import { RigPanel } from "./panels/rig.js";
+import { SearchFirst } from "./panels/search.js";
 import { Start } from "./panels/start.js";
 import { TolerancePanel } from "./panels/tolerance.js";
 import { ValuesPanel, otherProblems, problemsOf } from "./panels/values.js";
@@ -198,7 +199,7 @@ function Tabs({ store, api }) {
       aria-label="Enlarge" title="Enlarge: the whole height">⤢<//></div>
     <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>
       ${shown.ofDesign && isSearched(state, layout)
-        ? html`<p class="quiet">The network of ${layout} is free: search for the best one first.</p>`
+        ? html`<${SearchFirst} layout=${layout} />`
         : html`<${shown.Panel} store=${store} api=${api} />`}</div>
   </section>`;
 }

@@ -1,7 +1,7 @@
 // A plot from its declaration: axes, curves, shading, points to take; read by pointer, by keyboard, as a table; saved.
 
 import { Chip, DropDown, Table } from "./parts/controls.js";
-import { html, useEffect, useId, useLayoutEffect, useMemo, useRef, useState } from "./parts/html.js";
+import { html, useEffect, useLayoutEffect, useMemo, useRef, useState } from "./parts/html.js";
 import { indexAt, layoutOf, nearest, valueAt } from "./plots/layout.js";
 import { pngOf, svgOf } from "./plots/saving.js";
 import { csvOf, tableOf, thinned } from "./plots/table.js";
@@ -96,11 +96,13 @@ function useSize() {
   return [place, size];
 }
 
+let clips = 0; // of the page: what `useId` gives is not unique among plots that come at different times
+
 /** @param {{plot: Declaration, laid: Layout, svg: any, picked: number | null, look: (point: number) => void,
  * take: (point: Point) => void, children: any}} props */
 function Drawn({ plot, laid, svg, picked, look, take, children }) {
   const { width, height, font, box, x, y, names } = laid;
-  const clip = useId();
+  const clip = useMemo(() => `clip-${(clips += 1)}`, []);
   const points = plot.points ?? [];
   const near = (/** @type {PointerEvent} */ event) => nearestPoint(event, points, laid);
   return html`<svg ref=${svg} class="drawn" width=${width} height=${height} viewBox=${`0 0 ${width} ${height}`}

@@ -86,11 +86,12 @@ export const comparable = (state) =>
 export function comparedOf(state) {
   const { view, history: { present } } = state;
   const choices = comparable(state);
-  const chosen = view.compared.flatMap((key) => choices.filter((choice) => choice.key === key));
+  const chosen = view.compared?.flatMap((key) => choices.filter((choice) => choice.key === key)) ?? [];
   const [base, here] = [baselineOf(present).layout, present.layout].map((layout) => `layout ${layout}`);
   const [first, others] = [choices.filter(({ key }) => key === base), choices.filter(({ key }) => key !== base)];
   const other = others.find(({ key }) => key === here) ?? others[0];
-  const those = chosen.length > 0 ? chosen : [...first, ...(other ? [other] : [])];
+  const isChosen = chosen.length > 0 || view.compared?.length === 0;
+  const those = isChosen ? chosen : [...first, ...(other ? [other] : [])];
   return [...those.filter(({ key }) => key === view.against), ...those.filter(({ key }) => key !== view.against)];
 }
 

@@ -1,5 +1,6 @@
 // What outlives a moment: the link that holds the state, the tab's own memory, files that are opened and downloaded.
 
+import { baselineOf } from "./questions.js";
 import { empty } from "./state/document.js";
 import { initial } from "./state/store.js";
 import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
@@ -200,7 +201,8 @@ async function openRecord(store, api, file) {
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
   const blank = Object.keys(store.get().history.present.study).length === 0;
-  if (blank) await beginWith(store, api, (await api.get(`examples/${FOR_RECORDS}`)).study);
+  if (blank && (await beginWith(store, api, (await api.get(`examples/${FOR_RECORDS}`)).study)))
+    store.change({ type: "selected", layout: baselineOf(store.get().history.present).layout }); // the device joins it
   store.say(`${file.name} was read.${blank ? " A quarter car is open for its device: see Rig." : ""}`, file.name);
 }
 

@@ -5,9 +5,11 @@ import {
   positionOf,
   quantity,
   shown,
+  symbolParts,
   takenApart,
   valueAt,
   STEPS,
+  aligned,
   brief,
   completed,
   estimated,
@@ -191,8 +193,21 @@ test("quantities come apart and together as they are written", () => {
   assert.equal(quantity(123456.789, "N/m"), "123500 N/m");
   assert.equal(brief("7544.184883044672 N s/m"), "7544.2 N s/m");
   assert.equal(brief("181.75 kg"), "181.75 kg");
+  assert.equal(brief("3.19238 kN s/m"), "3.1924 kN s/m");
   assert.equal(shown(-6.4525e-5), "−6.4525·10⁻⁵");
   assert.equal(shown(null), "–");
+});
+
+test("numbers in a column have as many digits, zeros at the end too", () => {
+  const numbers = [523, 520.93, 5.37e-5, -0.05, 0, 12000, 1, 2e6, null, 0.001];
+  assert.deepEqual(numbers.map((number) => aligned(number, 4)),
+    ["523.0", "520.9", "5.370·10⁻⁵", "−0.05000", "0", "12000", "1.000", "2.000·10⁶", "–", "0.001000"]);
+});
+
+test("a symbol has a subscript, a word has none", () => {
+  const names = ["k", "ks", "c_f", "b12", "cs2", "k_front", "flywheel", "friction", "inerter_f", "f"];
+  assert.deepEqual(names.map((name) => symbolParts(name).join(" ")),
+    ["k ", "k s", "c f", "b 12", "c s2", "k front", "flywheel ", "friction ", "inerter_f ", "f "]);
 });
 
 test("what the library said of a study stands until it says more, without what the document has no longer", () => {
@@ -348,6 +363,8 @@ test("what is compared stands first beside what it is compared with, and goes wi
   );
   store.change({ type: "designRemoved", name: "mine" });
   assert.deepEqual(keys(), ["layout S1", "layout S2"]);
+  store.dispatch({ type: "viewed", view: { compared: [] } });
+  assert.deepEqual(keys(), []); // the last one was taken out
   store.dispatch({ type: "viewed", view: { compared: ["layout S9"] } });
   store.change({ type: "selected", layout: "S2" });
   assert.deepEqual(keys(), ["layout S1", "layout S2"]);

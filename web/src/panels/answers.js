@@ -4,7 +4,7 @@ import { treeOf, unchosenIn } from "../library.js";
 import { methodChoice } from "../methods.js";
 import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
 import { indicesIn, nextLayout, textOf } from "../state/document.js";
-import { estimated, placed, shown, withUnit } from "../state/scale.js";
+import { aligned, estimated, placed, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
 import { html, useState } from "../parts/html.js";
@@ -163,7 +163,7 @@ function Amount({ result: { value, standard_error: error, error_bound: bound, de
 }
 
 /** @param {{value: any}} result */
-const amountText = ({ value }) => (typeof value === "string" ? value.replace("inf", "∞") : shown(value, 4));
+const amountText = ({ value }) => (typeof value === "string" ? value.replace("inf", "∞") : aligned(value, 4));
 
 /** @param {number | null | undefined} value @param {number | null} [error] */
 export function percent(value, error) {

@@ -57,7 +57,7 @@ export function AskedPanel({ store }) {
       <${Select} name="sense" aria-label="Which side"
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
       <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"
-        autocomplete="off" /> <button>Add</button>
+        autocomplete="off" /> <button class="edged">Add</button>
     </form>
   </div>`;
 }

@@ -63,12 +63,12 @@ function Comparison({ state, answer, compared }) {
         ${columns.map(({ network }, i) => html`<td key=${i}><code>
           ${[...new Set(typeof network === "string" ? [network] : Object.values(network))].join("; ")}</code></td>`)}
       </tr>
-      ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>
-        ${columns.map(({ numbers }, i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
       ${columns[0].results.map((first, row) => html`<tr key=${first.index}>
         <th scope="row"><b>${first.index}</b> <span class="quiet">${withUnit(first.title, first.unit)}</span></th>
         ${columns.map(({ results, unchosen }, i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0}
           unchosen=${unchosen.length > 0 || columns[0].unchosen.length > 0} />`)}</tr>`)}
+      ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>
+        ${columns.map(({ numbers }, i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
   <//>
   <p class="quiet">In per cent of ${columns[0].name}, all on the road of this study, and on the same roads where it
     is simulated; ± is the standard error of a difference itself. Bold: the best, and what is as good.</p>`;
@@ -105,7 +105,7 @@ function Keep({ store }) {
     setName("");
   })}>
     <label>Keep this design as <input value=${name} autocomplete="off" onInput=${textHandler(setName)} /></label>
-    ${" "}<button disabled=${!name.trim()}>Keep</button>
+    ${" "}<button class="edged" disabled=${!name.trim()}>Keep</button>
   </form>
   ${document.designs.length > 0 &&
   html`<ul class="kept">${document.designs.map((design) => html`<li class="row" key=${design.name}><b>${design.name}</b>

@@ -50,8 +50,8 @@ function vehicleOf({ history }) {
   const { vehicle, road } = history.present.study;
   const model = String(vehicle?.model ?? "Own vehicle").replaceAll("-", " ");
   const apart = takenApart(road?.speed);
-  return [model.charAt(0).toUpperCase() + model.slice(1), apart && quantity(apart.number, apart.unit)]
-    .filter(Boolean).join(", ");
+  const speed = apart && quantity(apart.number, apart.unit).replaceAll(" ", "\u00a0");
+  return [model.charAt(0).toUpperCase() + model.slice(1), speed].filter(Boolean).join(", ");
 }
 
 /** The strut that is edited, and its place in the ranking. @param {State} state */
@@ -96,7 +96,8 @@ function Verdict({ state, blank }) {
   const searched = searchedLayouts(state);
   const none = searched.length > 0 ? `No strut to rank: the network of ${searched.join(", ")} is to be searched for.`
     : "Not computed: the study has no index.";
-  const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : "";
+  const unsearched = searched.length > 0 && value?.rows.length < 2; // nothing is wrong with what stands alone
+  const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : unsearched ? none : "";
   const kind = is === "coming" || failed === none ? "wait" : failed ? "none" : (verdict?.severity ?? "answer");
   const told = failed || verdict?.sentence || "Under way";
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"

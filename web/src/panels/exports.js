@@ -6,6 +6,7 @@ import { Unchosen } from "../parts/doubts.js";
 import { html, useState } from "../parts/html.js";
 import { designOf, goalOf } from "../questions.js";
 import { download, fileName } from "../remembering.js";
+import { SearchFirst } from "./search.js";
 
 /** @typedef {{key: string, description: string, suffixes: string[], requires: string}} ExportKind */
 
@@ -31,8 +32,9 @@ export function ExportMenu({ store, api }) {
   };
   return html`<${DropDown} title="Export" id="export-menu">
     <b>${layout} for other programs</b>
-    ${isSearched(state, layout) ? html`<p class="quiet">Its network is free: search for the best one first.</p>`
+    ${isSearched(state, layout) ? html`<${SearchFirst} layout=${layout} />`
       : html`<${Unchosen} state=${state} designs=${[design]} />
+      ${study.conditions?.length > 0 && html`<p class="quiet">${state.about?.export_note}</p>`}
       ${isNonlinear && html`<label><input type="checkbox" checked=${linear} onChange=${() => setLinear(!linear)} />
         linear: without friction and gaps</label>`}
       <ul class="exports">${(state.about?.exports ?? []).map((/** @type {ExportKind} */ kind) => html`<li

@@ -69,16 +69,17 @@ export const MarginsResult = ({ job }) => html`<${Margins} value=${job.result} /
 function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats = [] } }) {
   const told = (/** @type {any[]} */ some) => some.map(({ sentence }) => html`<p key=${sentence}>${sentence}</p>`);
   const doubts = caveats.filter((/** @type {any} */ { severity }) => severity !== "info");
-  return html`${doubts.length > 0 && html`<div class="doubts problem" role="alert">${told(doubts)}</div>`}
+  return html`<div class="margins">${doubts.length > 0
+      && html`<div class="doubts problem" role="alert">${told(doubts)}</div>`}
     ${told(caveats.filter((/** @type {any} */ one) => !doubts.includes(one)))}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
-    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["speed [m/s]", "against the baseline"]}>
+    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["Speed [km/h]", "against the baseline"]}>
       ${speeds.map((/** @type {any} */ { factor, speed, improvement_percent: better, status }) => html`<tr
         key=${factor}>
-        <th scope="row">${shown(speed)} (${signed(100 * (factor - 1), 0)})</th>
+        <th scope="row">${shown(3.6 * speed, 4)} (${signed(100 * (factor - 1), 0)})</th>
         <td class="number">${isOk(status) ? "" : `${status}: `}${signed(better)}</td></tr>`)}<//>`}
-    ${scatter?.sentence && html`<p>${scatter.sentence}</p>`}`;
+    ${scatter?.sentence && html`<p>${scatter.sentence}</p>`}</div>`;
 }
 
 /** How much of an element the design bears before the baseline is as good.
@@ -94,7 +95,7 @@ function Budget({ store, api, indices }) {
     <form class="row" aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
       void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") }))}>
     <${Select} label="Element" name="parameter" key=${document.layout} choices=${names} selected=${switching} />
-    <${Select} label="index" name="index" selected=${goalOf(state)}
+    <${Select} label="Index" name="index" selected=${goalOf(state)}
       key=${goalOf(state)} choices=${indices.map(({ symbol }) => symbol)} />
     <button class="edged">Compute</button>
     <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value

@@ -4,7 +4,7 @@ import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } fro
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
-import { brief, printed } from "../state/scale.js";
+import { brief, printed, symbolParts } from "../state/scale.js";
 import { isFreeNetwork, kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
@@ -67,8 +67,8 @@ function Editor({ store, api, children }) {
           html`<${Chip} on=${how === kind} set=${() => setHow(kind)}>in ${kind}<//>`)}</div>
       <${PartMenu} editing=${editing} off=${off} selected=${selected} />
       ${shownTree && (state.view.across || leaves(shownTree).length > MANY)
-        && html`<${Chip} on=${state.view.across} set=${() => store.look({ across: !state.view.across })}>Lay out wide
-        <//>`}</div>
+        && html`<${Chip} on=${state.view.across} set=${() => store.look({ across: !state.view.across })}
+          aria-label="Lay out wide" title="Lay out wide: over the whole page">⤢<//>`}</div>
     ${children}
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part below, or write one.</p>`
@@ -318,14 +318,16 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
     <rect class="touch" x="-11" y="-20" height="40" rx="3"
       width=${24 + Math.max(valued ? VALUE : 0, 5.2 * shortLabel(one.name).length)} />
     <path class="symbol" d=${symbolPath(kind)} />
-    <text x="12" y="2">${subscripted(shortLabel(one.name))}</text>
+    <text x="12" y="2">${free ? shortLabel(one.name) : subscripted(shortLabel(one.name))}</text>
     ${valued && html`<text class="value" x="12" y="12">${printed(brief(value))}</text>`}
   </g>`;
 }
 
-/** A name of which what follows the first letter is a subscript. @param {string} name */
-const subscripted = (name) =>
-  html`${name[0]}<tspan dy="2" font-size="7.5">${name.slice(1).replace(/^_/, "")}</tspan>`;
+/** A name as a symbol. @param {string} name */
+function subscripted(name) {
+  const [symbol, subscript] = symbolParts(name);
+  return html`${symbol}<tspan dy="2" font-size="7.5">${subscript}</tspan>`;
+}
 
 /** Whether the keyboard enters the drawing at this element: what is selected, or the first of it.
  * @param {Path} leafPath @param {Path} path */

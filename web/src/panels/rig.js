@@ -13,6 +13,8 @@ import { JobHead } from "./work.js";
 /** @import { Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 
+const CHOOSE = "choose"; // the model that is chosen among all
+
 /** @param {{store: Store, api: Api}} props */
 export function RigPanel({ store, api }) {
   const state = store.get();
@@ -24,9 +26,6 @@ export function RigPanel({ store, api }) {
     <label class="file">choose one <input type="file" accept=".csv,.tsv,.txt,.tdms,.mf4,.mdf,.mat" multiple
       onChange=${(/** @type {Event} */ event) => open(store, api,
         /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label>
-    <ul class="records">
-      ${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api}
-        record=${record} />`)}</ul>
     ${state.records.length > 0 &&
     html`<form class="row" onSubmit=${formHandler(async (form) => setTold(await tryToBegin(store, api, {
       kind: "identify",
@@ -35,10 +34,14 @@ export function RigPanel({ store, api }) {
       records: state.records.map(({ id }) => id),
       model: form.get("model"),
     })))}>
-      <${Select} label="Model" name="model" choices=${models} />
+      <${Select} label="Model" name="model" choices=${models.map((/** @type {string} */ model) =>
+        (model === CHOOSE ? [model, "choose among all (minutes)"] : model))} />
       <button class="main">Identify</button>
     </form>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
+    <ul class="records">
+      ${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api}
+        record=${record} />`)}</ul>
     ${fits.map((job) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} />`)}
   </div>`;
 }
@@ -131,7 +134,7 @@ function Fit({ store, api, job }) {
     html`<${Doubts} members=${[{ of: result.model, status: result.status,
       message: result.reason }]} />
       <${Causes} store=${store} api=${api} result=${result} />
-      <${Table} label="Identified values" heads=${["", "value", "95 % interval", ""]}>
+      <${Table} label="Identified values" heads=${[result.model, "value", "95 % interval", ""]}>
         ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
           <th scope="row">${name}</th>
           ${[0, 1].map((i) => html`<td class="number">${result.shown[name][i]}</td>`)}

@@ -33,6 +33,10 @@ export function toSearch(store) {
   });
 }
 
+/** What stands in the place of what needs a network. @param {{layout: string}} props */
+export const SearchFirst = ({ layout }) =>
+  html`<p class="quiet">The network of ${layout} is free: search for the best one first.</p>`;
+
 /** Layouts to search, the selected one first. @param {{store: Store}} props */
 export function SearchForm({ store }) {
   const state = store.get();
@@ -68,7 +72,7 @@ function FreeNetwork({ store, name }) {
     return html`<label key=${key} title=${description}>${key === "network" ? "elements at most"
       : key.replaceAll("_", " ")} ${type === "boolean" ? html`<input type="checkbox" checked=${value}
         onChange=${switched} />` : html`<${Field} type="number" class="short" min=${minimum} max=${maximum}
-        text=${value} placeholder="any" done=${number} />`}</label>`;
+        text=${value} placeholder="no limit" done=${number} />`}</label>`;
   })}</fieldset>`;
 }
 
@@ -114,13 +118,15 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   const methods = [...new Set(real.map((/** @type {Row} */ { method }) => method))];
   return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
       ({ of: network, status, message }))} />
+    ${ranking.length === 0 && html`<p class="quiet">No network is optimised yet.</p>`}
     ${frontier.length > 1 && html`<${Frontier} one=${one} baseline=${baseline} take=${take} />`}
-    <p class="quiet">The best ${ranking.length} ${complete ? `of ${networks} networks` : "so far"} (* at a bound)</p>
+    ${ranking.length > 0 && html`<p class="quiet">The best ${ranking.length} ${complete
+        ? `of ${networks} networks` : "so far"} (* at a bound)</p>
     <${Table} label="Ranking" heads=${["network", index, ...better, ""]}>
       ${ranking.map((/** @type {Row} */ row, /** @type {number} */ i) => html`<${NetworkRow} key=${row.network}
         state=${state} row=${row} take=${take} rank=${i + 1} text=${shown(row.value)} unit=${unit}
         compared=${compared} />`)}
-    <//>
+    <//>`}
     ${methods.map((method) => html`<p class="quiet" key=${method}>With real inerters, elastic and with friction:
         optimised by ${method}</p>
       <${Table} key=${`${method} table`} label=${`Real inerters by ${method}`}

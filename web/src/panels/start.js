@@ -142,24 +142,41 @@ async function examplesOf(api, about, told, wanted) {
   }
 }
 
-const BODIES = { // what carries the strut, as a path, by the kind of the vehicle
-  car: "M10 62q2-16 20-18l22-4q14-20 40-20h26q24 0 40 20l26 5q14 3 14 17z",
-  block: "M56 14h88q6 0 6 6v14q0 6 -6 6h-88q-6 0 -6 -6v-14q0 -6 6 -6z",
+const GROUND = 104;
+
+/** A picture of a vehicle: its bodies as paths, where its wheels and struts are.
+ * @typedef {{bodies: string[], wheels: number[], radius: number, struts: number[], top: number, bottom: number,
+ * width: number}} Outline */
+
+/** @type {Outline} */
+const BLOCK = { bodies: ["M56 14h88q6 0 6 6v14q0 6 -6 6h-88q-6 0 -6 -6v-14q0 -6 6 -6z"], wheels: [], radius: 0,
+  struts: [100], top: 40, bottom: GROUND, width: 120 };
+/** @type {Outline} */
+const CAR = { bodies: ["M10 62q2-16 20-18l22-4q14-20 40-20h26q24 0 40 20l26 5q14 3 14 17z"], wheels: [48, 152],
+  radius: 13, struts: [48, 152], top: 46, bottom: 78, width: 44 };
+/** @type {Outline} */
+const COACH = { bodies: ["M20 8h160q6 0 6 6v22q0 6 -6 6h-160q-6 0 -6 -6v-22q0 -6 6 -6z", "M28 78h48v6h-48z",
+  "M124 78h48v6h-48z"], wheels: [38, 66, 134, 162], radius: 9, struts: [52, 148], top: 42, bottom: 78, width: 60 };
+/** @type {{[model: string]: Outline}} */
+const OUTLINES = {
+  "quarter-car": { ...BLOCK, wheels: [100], radius: 13, bottom: 78 }, "half-car": CAR, "full-car": CAR,
+  absorber: { ...BLOCK, bodies: ["M76 8h48q6 0 6 6v8q0 6 -6 6h-48q-6 0 -6 -6v-8q0 -6 6 -6z",
+    "M68 92V104M132 92V104M50 68h100q6 0 6 6v12q0 6 -6 6h-100q-6 0 -6 -6v-12q0 -6 6 -6z"], top: 28, bottom: 68 },
 };
+
+/** @param {any} vehicle */
+const outlineOf = (vehicle) => OUTLINES[vehicle?.model]
+  ?? (Object.keys(vehicle?.tyres ?? {}).length > 2 ? COACH : BLOCK);
 
 /** A strut below what it carries. @param {{example: Example}} props */
 function Picture({ example: { study, tree, kinds } }) {
-  const model = study.vehicle?.model;
-  const axles = { "quarter-car": [100], "half-car": [48, 152], "full-car": [48, 152] }[String(model)] ?? [];
-  const car = axles.length > 1;
-  const ground = 104;
+  const { bodies, wheels, radius, struts, ...place } = outlineOf(study.vehicle);
   return html`<svg viewBox="0 0 200 112" aria-hidden="true">
-    <path d=${`M0 ${ground}H200`} stroke="var(--road)" stroke-width="2" />
-    <path d=${car ? BODIES.car : BODIES.block} fill="var(--body)" stroke="var(--ink)" />
-    ${axles.map((x) => html`<circle cx=${x} cy=${ground - 14} r="13" fill="var(--tyre)" stroke="var(--ink2)" />
-      <circle cx=${x} cy=${ground - 14} r="7" fill="var(--body)" />`)}
-    ${tree && (car ? axles : [100]).map((x) => html`<${Strut} tree=${tree} kinds=${kinds} x=${x} top=${car ? 46 : 40}
-      bottom=${axles.length ? ground - 26 : ground} width=${car ? 44 : 120} />`)}
+    <path d=${`M0 ${GROUND}H200`} stroke="var(--road)" stroke-width="2" />
+    ${bodies.map((path) => html`<path key=${path} d=${path} fill="var(--body)" stroke="var(--ink)" />`)}
+    ${wheels.map((x) => html`<circle cx=${x} cy=${GROUND - radius - 1} r=${radius} fill="var(--tyre)"
+      stroke="var(--ink2)" /><circle cx=${x} cy=${GROUND - radius - 1} r=${0.54 * radius} fill="var(--body)" />`)}
+    ${tree && struts.map((x) => html`<${Strut} key=${x} tree=${tree} kinds=${kinds} x=${x} ...${place} />`)}
   </svg>`;
 }
 

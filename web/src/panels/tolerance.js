@@ -39,7 +39,7 @@ export function TolerancePanel({ store, api }) {
         ${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any"
           defaultValue=${USUAL} /> %</label>`)}</div>
     <div class="row"><${Select} label="Index" name="index" choices=${indexChoices(indices)} />
-      ${" "}<button>Compute</button></div>
+      ${" "}<button class="edged">Compute</button></div>
     <p role="status">${is === "coming" ? html`<${Moving} what="Under way" />` : sentence}</p>
   </form>
   <${Unchosen} state=${state} designs=${[designOf(document)]} />

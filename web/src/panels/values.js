@@ -9,7 +9,8 @@ import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, bestOf, goalOf, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
-import { STEPS, brief, completed, positionOf, printed, quantity, takenApart, valueAt } from "../state/scale.js";
+import { STEPS, brief, completed, positionOf, printed, quantity, symbolParts, takenApart, valueAt }
+  from "../state/scale.js";
 import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -240,11 +241,11 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
   </div>`;
 }
 
-/** A name; of an element what follows its first letter is a subscript, as in the picture of the vehicle.
+/** A name; that of an element as a symbol, as in the picture of the vehicle.
  * @param {{label: string, element: boolean}} props */
 function Name({ label, element }) {
-  if (!element || label.length < 2) return label;
-  return html`${label[0]}<sub>${label.slice(1).replace(/^_/, "")}</sub>`;
+  const [symbol, subscript] = element ? symbolParts(label) : [label, ""];
+  return subscript ? html`${symbol}<sub>${subscript}</sub>` : symbol;
 }
 
 /** What a number is, and its bounds. @param {{store: Store, amount: Amount}} props */

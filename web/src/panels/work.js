@@ -66,7 +66,8 @@ function Begin({ store, api, kind }) {
     <h3>${kind.title}</h3>
     <p class="quiet">${kind.sentence}</p>
     ${lacking ? html`<p class="quiet">${lacking}</p>`
-      : html`<div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}<button>Begin</button></div>`}
+      : html`<div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}
+        <button class="edged">Begin</button></div>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
   </form>`;
 }

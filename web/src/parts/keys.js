@@ -21,15 +21,18 @@ const KEYS = {
 const Row = ({ place }) => KEYS[place].map(([keys, words]) => html`<span key=${words}>
   ${keys.split(" ").map((key) => html`<kbd key=${key}>${key}</kbd> `)}${words} ${" "}</span>`);
 
+/** Where the focus is. */
+function placeOfFocus() {
+  const inside = document.activeElement?.closest("[data-keys]")?.getAttribute("data-keys");
+  return inside && inside in KEYS ? inside : "Page";
+}
+
 /** The keys of what has the focus. */
 export function KeysOfFocus() {
   const [place, setPlace] = useState("Page");
+  const look = () => setPlace(placeOfFocus());
+  useEffect(look); // what had the focus may be gone with what was drawn, of which no event tells
   useEffect(() => {
-    /** @param {FocusEvent} event */
-    const look = ({ target }) => {
-      const inside = target instanceof Element && target.closest("[data-keys]")?.getAttribute("data-keys");
-      setPlace(inside && inside in KEYS ? inside : "Page");
-    };
     addEventListener("focusin", look);
     return () => removeEventListener("focusin", look);
   }, []);

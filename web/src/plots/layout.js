@@ -184,6 +184,7 @@ function keysAt(keys, title, width, font) {
   return { keys: placed, rows: row };
 }
 
+const CAPITAL = /\p{Lu}/u; // is wider
 const CANDIDATES = 16; // places of a name along its curve
 const SAMPLES = 110; // of a curve, where names look for room
 const STAYS = 6; // by how much a better place must be better
@@ -197,7 +198,7 @@ function namesOf(curves, dots, points, box, { x, y, font, before }) {
   const placed = [];
   curves.forEach(({ name, colour, unnamed, pale }, number) => {
     if (unnamed || dots[number].length === 0) return;
-    const wide = name.length * font * 0.65;
+    const wide = font * [...name].reduce((sum, letter) => sum + (CAPITAL.test(letter) ? 0.85 : 0.65), 0);
     const last = before.find((each) => each.name === name);
     const best = spotsOf(dots[number], wide, font, box).map((spot) => {
       const { box: own } = spot;

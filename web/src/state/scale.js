@@ -28,7 +28,7 @@ export function completed(typed, before, names = {}) {
 /** A quantity of many digits with five of them, any other as it was written. @param {string} text */
 export function brief(text) {
   const apart = takenApart(text);
-  const long = apart !== null && /\d[\d.]{7,}/.test(text);
+  const long = apart !== null && /\d[\d.]{6,}/.test(text);
   return long ? `${Number(apart.number.toPrecision(5))} ${apart.unit}`.trim() : text;
 }
 
@@ -53,6 +53,15 @@ export function shown(number, digits = 5) {
     return `${minus(Number(mantissa))}·10${superscript(String(Number(power)))}`;
   }
   return minus(Number(number.toPrecision(digits)));
+}
+
+/** A number with so many digits, zeros at the end too, as in the columns of a table.
+ * @param {number | null | undefined} number @param {number} digits */
+export function aligned(number, digits) {
+  const text = shown(number, digits);
+  const missing = digits - text.replace(/·.*/, "").replace(/^\D*0*\.?0*|\D/g, "").length;
+  if (missing <= 0 || !/[1-9]/.test(text)) return text;
+  return text.replace(/^(−?\d+)(\.\d+)?/, (_, whole, part = ".") => `${whole}${part}${"0".repeat(missing)}`);
 }
 
 /** A quantity with few digits. @param {string} text */
@@ -97,6 +106,13 @@ export const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-012
 
 /** A unit as a person writes it. @param {string} unit */
 export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power));
+
+/** A symbol and its subscript: of a letter with few others behind it, or with an underscore; of a word there is none.
+ * @param {string} name @returns {[string, string]} */
+export function symbolParts(name) {
+  const [, letter, after, close] = /^([A-Za-z])(?:_(.+)|(\d\w*|[A-Za-z]{1,2}\d*))$/.exec(name) ?? [];
+  return letter ? [letter, after ?? close] : [name, ""];
+}
 
 /** What a number is, with its unit in brackets if it has one.
  * @param {string} what @param {string | null | undefined} unit */

@@ -19,7 +19,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
  * seconds since 1970, by the clock of the server; `found`: a result so far */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
- * playing: boolean, compared: string[], against: string, seconds: number, seed: number, output: string,
+ * playing: boolean, compared: string[] | null, against: string, seconds: number, seed: number, output: string,
  * across: boolean, tall: boolean, ghosts: string[]}} View  `index`: by which layouts are ranked, the first of the study
  * where it is none of them; `output`: of the motion, the first where it is empty; `ghosts`: designs whose responses are
  * drawn too; `method`: by which is judged, the quick one where it is empty; `against`: what others are compared with;
@@ -72,7 +72,7 @@ export const initial = () => ({
   typed: null,
   view: {
     path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
-    compared: [], against: "", seconds: 10, seed: 0, output: "", across: false, tall: false, ghosts: [],
+    compared: null, against: "", seconds: 10, seed: 0, output: "", across: false, tall: false, ghosts: [],
   },
 });
 

@@ -22,14 +22,14 @@ export function captions(made, moved, names) {
   const large = `drawn ${made.times} times as large`;
   const road = scene.tracks.length > 0 && scene.column ? `, the road at ${moved.passing} px a second` : "";
   const above = standing(made, moved, large);
-  if (above.length === 0) into.push(quiet(12, height - 10, `heights ${large}${road}`));
-  above.forEach((words, i) => into.push(quiet(12, (narrow ? 60 : 18) + 16 * i, words)));
+  if (above.length === 0) into.push(text("on earth", 12, height - 10, `heights ${large}${road}`));
+  above.forEach((words, i) => into.push(text("quiet", 12, (narrow ? 60 : 18) + 16 * i, words)));
   if (names) into.push(...legend(made, names, narrow, above.length));
   return into;
 }
 
-/** @param {number} x @param {number} y @param {string} text @returns {Shape} */
-const quiet = (x, y, text) => ({ kind: "text", x, y, text, class: "quiet" });
+/** @param {string} kind @param {number} x @param {number} y @param {string} words @returns {Shape} */
+const text = (kind, x, y, words) => ({ kind: "text", x, y, text: words, class: kind });
 
 /** Heave, pitch and roll of the body, a line each. @param {Layout} made
  * @param {{moment: Moment, motion: Motion}} moved @param {string} large @returns {string[]} */
@@ -54,7 +54,7 @@ function scaleBar({ lift, width }, narrow) {
   return [
     line([[x - 4, y], [x + 4, y]], "bar"), line([[x, y], [x, y + tall]], "bar"),
     line([[x - 4, y + tall], [x + 4, y + tall]], "bar"),
-    { kind: "text", x: x - 10, y: y + tall / 2 + 4, text: `${length} mm`, class: "quiet", anchor: "end" },
+    { kind: "text", x, y: y + tall + 15, text: `${length} mm`, class: "beside", anchor: "middle" },
   ];
 }
 

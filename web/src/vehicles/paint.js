@@ -1,5 +1,7 @@
 // Shapes on a canvas, in the colours of the page.
 
+import { symbolParts } from "../state/scale.js";
+
 /** @import { Shape, Point } from "./symbols.js" */
 /** @typedef {{fill?: string, stroke?: string, width?: number, dash?: number[], font?: string, alpha?: number,
  * round?: boolean}} Style */
@@ -11,7 +13,7 @@ const COLOURS = {
   stick: ["#c77700", "#f2a93b"], warn: ["#7a4b00", "#ffcf70"], body: ["#dfe7ee", "#2a3742"],
   glass: ["#f3f7fa", "#1c262e"], tyre: ["#2b343c", "#05080a"], earth: ["#e6e2da", "#211f1b"],
   road: ["#6f675a", "#a0978a"], s1: ["#5b6873", "#9ba8b4"], s2: ["#a65300", "#f0a35a"], s3: ["#0a5bb5", "#6fb4ff"],
-  s4: ["#6b3fa0", "#c4a1f5"],
+  s4: ["#6b3fa0", "#c4a1f5"], s5: ["#14703a", "#5bcb8a"], s6: ["#8a6d00", "#e0c35a"],
 };
 
 const DASH = [4, 3];
@@ -32,7 +34,8 @@ export function stylesOf(element, own = "var(--s3)") {
     flywheel: { fill: c.soft, stroke: c.ink, width: 1.6 }, dot: { fill: c.ink },
     block: { fill: c.surface, stroke: c.ink, width: 1.6 }, "block stick": { fill: c.stick, stroke: c.ink, width: 1.6 },
     name: { fill: c.ink, font: SERIF, stroke: c.surface }, text: { fill: c.ink, font: PLAIN },
-    quiet: { fill: c.ink2, font: PLAIN }, beside: { fill: c.ink2, font: PLAIN, stroke: c.surface },
+    quiet: { fill: c.ink2, font: PLAIN }, "on earth": { fill: c.ink2, font: PLAIN, stroke: c.earth },
+    beside: { fill: c.ink2, font: PLAIN, stroke: c.surface },
     told: { fill: c.warn, font: `600 ${PLAIN}`, stroke: c.surface },
     earth: { fill: c.earth }, plain: { fill: c.earth, alpha: 0.6 }, road: { stroke: c.road, width: 2.2 },
     strip: { stroke: c.road, width: 8, alpha: 0.3 },
@@ -119,13 +122,13 @@ function rounded(pen, points) {
   });
 }
 
-/** A name with what follows its first letter below the line. @param {CanvasRenderingContext2D} pen
+/** A text, or a name as a symbol. @param {CanvasRenderingContext2D} pen
  * @param {Extract<Shape, {kind: "text"}>} shape @param {Style} style */
 function write(pen, { x, y, text, anchor = "start", class: kind }, style) {
   pen.fillStyle = style.fill ?? "";
   pen.font = style.font ?? PLAIN;
   pen.textAlign = anchor === "middle" ? "center" : anchor;
-  const parts = kind === "name" ? text.match(/^([A-Za-z])_?(.+)$/) : null;
+  const [symbol, subscript] = kind === "name" ? symbolParts(text) : [text, ""];
   pen.strokeStyle = style.stroke ?? "";
   pen.lineWidth = HALO;
   pen.setLineDash([]);
@@ -134,9 +137,9 @@ function write(pen, { x, y, text, anchor = "start", class: kind }, style) {
     if (style.stroke) pen.strokeText(words, across, down);
     pen.fillText(words, across, down);
   };
-  if (!parts) return put(text, x, y);
-  put(parts[1], x, y);
-  const beside = x + pen.measureText(parts[1]).width + 1;
+  put(symbol, x, y);
+  if (!subscript) return;
+  const beside = x + pen.measureText(symbol).width + 1;
   pen.font = SERIF.replace("14px", "10px");
-  put(parts[2], beside, y + 3);
+  put(subscript, beside, y + 3);
 }

@@ -141,7 +141,17 @@ def test_nodes_that_only_springs_hold(name: str, masters: list[Master], tmp_path
     car, step = paper_quarter_car(LOOSE[name]), 1e-3
     signal, height, slope = road(1.0, step)
     found = driven(opened(masters, car, "fmu", tmp_path), height, slope, step, SHOWN)
-    assert error(found, simulated(car, signal, step, 1.0, SHOWN)) < 3e-5
+    assert error(found, simulated(car, signal, step, 1.0, SHOWN)) < 1e-6
+
+
+@pytest.mark.parametrize("step", [1e-3, 1e-5])
+def test_what_sticks_between_springs_stays_where_it_is(step: float, masters: list[Master], tmp_path: Path) -> None:
+    """However many steps there are: a friction that never slips is rigid."""
+    held = paper_quarter_car(K | C | it.Spring(1e5) - (it.Friction(1e6) | it.Spring(3e4)) - it.Spring(2e5))
+    rigid = paper_quarter_car(K | C | it.Spring(1e5) - it.Spring(2e5))
+    signal, height, slope = road(0.05, step)
+    found = driven(opened(masters, held, "fmu", tmp_path), height, slope, step, SHOWN)
+    assert error(found, simulated(rigid, signal, step, 0.05, SHOWN)) < 1e-6
 
 
 def rough(number: int) -> it.Mechanism:

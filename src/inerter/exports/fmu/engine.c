@@ -8,7 +8,7 @@
    change as ramps, so that what sticks beside a light damper does not creep. A step in which one of them changes its
    state is halved, down to 2^(1 - LEVELS) of the whole, where reactions are held; the flows of its parts are powers of
    each other. Reactions at an instant are those of a step of GLANCE from there. A friction that CREEPS is at a node that
-   only springs hold: its force moves the node at once, and its law is about the way in the step. */
+   only springs hold: its force moves the node at once, and its law is about its elongation, which slip alone changes. */
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,6 +46,7 @@ typedef struct {
     double e[ORDERS][NE + 1];
     double u[ORDERS][NU + 1];
     double r[NR + 1]; /* in tension */
+    double place[NR + 1]; /* elongation of a friction that creeps, which only its slip changes */
     double p[NP + 1];
     double mean; /* of the force of a strut over the last step */
     int stale; /* whether u and r are not yet those of this instant */
@@ -267,7 +268,7 @@ static void follow(const Model *model, const Flow *flow, double step, int held, 
 {
     double next[NX + 1], motion[NR + 1], before[NR + 1];
     int i, j, k;
-    for (i = 0; i < NR; i++) motion[i] = CREEPS[i] ? -motion_of(model, i, now->x, now->u[0], now->r) : 0.0;
+    for (i = 0; i < NR; i++) motion[i] = CREEPS[i] ? -now->place[i] : 0.0;
     for (i = 0; i < NX; i++) {
         next[i] = 0.0;
         for (j = 0; j < NX; j++) next[i] += flow->flow[i][j] * now->x[j];
@@ -295,6 +296,9 @@ static void follow(const Model *model, const Flow *flow, double step, int held, 
             now->x[i] += flow->flow[i][HELD + NR + j] * (now->r[j] - first) / step;
         }
     }
+    for (i = 0; i < NR; i++)
+        if (CREEPS[i] && !(now->r[i] > model->low[i] && now->r[i] < model->high[i]))
+            now->place[i] = motion_of(model, i, now->x, now->u[0], now->r);
 }
 
 /* Reactions at the instant of a state: what they are in the smallest step from there. */
@@ -373,7 +377,7 @@ static double sensitivity(const Model *model, int number, const double *dx, cons
     }
     for (i = 0; i < NR; i++) {
         active[i] = model->low[i] < model->high[i] ? (contact(model, model->now.r, i) == 0) != GAP[i] : GAP[i];
-        motion[i] = motion_of(model, i, next, du, NULL) - (CREEPS[i] ? motion_of(model, i, dx, du, NULL) : 0.0);
+        motion[i] = motion_of(model, i, next, du, NULL);
     }
     hold(model->glance.held, active, dr, motion);
     for (j = 0; j < NX; j++) y += model->C[number][j] * dx[j];

@@ -35,7 +35,7 @@ class SwitchingSystem:
 
     `system` has the reactions among its inputs, last. q is the velocity across a friction, whose reaction is `upper`
     where it slips down, or the elongation of a gap, which stays between both. The q of a friction that `creeps` is its
-    elongation, of which the way in a step counts. `limits`
+    elongation, which slip alone changes. `limits`
     are those that a parameter gives. `equations`, where they are known, give the matrices for other parameters.
     """
 

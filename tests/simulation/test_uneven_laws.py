@@ -312,6 +312,25 @@ def test_a_constant_force_leaves_gains_as_they_are():
     assert len(found) == 1
 
 
+@pytest.mark.campaign
+def test_a_constant_force_moves_the_equilibrium_and_no_mean_square():
+    """R.m.s. values are of deviations from static equilibrium, by every method; a stop is met as much earlier."""
+    index, method = it.SuspensionTravel(ROAD), it.ExpectedValue(realisations=2)
+    stiffness, damper, buffer = 5e4, Damper(1500.0), Spring(1e5) | Damper(1e3)
+
+    def found(part: Network, by: object = method) -> it.Estimate:
+        return it.evaluate(paper_quarter_car(Spring(stiffness) | damper | part), index, by)
+
+    plain = it.evaluate(paper_quarter_car(Spring(stiffness) | damper), index, it.Norm())
+    assert found(Push(800.0)).value == pytest.approx(plain.value, rel=1e-12)
+    assert found(Push(800.0) | Friction(20.0)).value == pytest.approx(found(Friction(20.0)).value, rel=1e-6)
+    loaded = found(Push(100.0) | (buffer - OneSidedStop(3e-3)))
+    assert loaded.value == pytest.approx(found(buffer - OneSidedStop(3e-3 - 100.0 / stiffness)).value, rel=1e-6)
+    assert loaded.value != pytest.approx(plain.value, rel=1e-3)
+    by = it.StatisticalLinearisation()
+    assert found(Push(800.0) | Friction(20.0), by).value == found(Friction(20.0), by).value
+
+
 def test_new_values_that_change_what_holds_are_refused():
     car = paper_quarter_car(Spring(5e4) | Damper(1500.0) | Reach(30.0, "u"))
     system = piecewise(car)

@@ -158,7 +158,7 @@ class ExpectedValue(FormerMethodNames):
         system = piecewise(definition.drive.excited_mechanism(mechanism))
         if definition.is_peak:
             return None
-        if not is_nonlinear(system, definition):
+        if not is_nonlinear(system):
             return np.zeros(count), np.zeros(_MORE)
         change = first_order(system, definition, random_excitation(system, definition, conventions, self.period))
         if change is None:
@@ -177,7 +177,7 @@ class ExpectedValue(FormerMethodNames):
         definition = with_convention_filters(conventions, mechanism, index.definition(mechanism))
         linear = _linear(vehicle, definition, conventions)
         system = piecewise(definition.drive.excited_mechanism(mechanism))
-        if not _is_held(system, definition, conventions) and not is_nonlinear(system, definition):
+        if not _is_held(system, definition, conventions) and not is_nonlinear(system):
             assert linear is not None
             return replace(linear.estimate({}), standard_error=0.0)
         if definition.is_peak:
@@ -229,10 +229,10 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
     return omegas if omegas.size and np.all(np.isfinite(omegas)) else None
 
 
-def is_nonlinear(system: PiecewiseSystem, definition: IndexDefinition) -> bool:
-    """Whether an element switches or, for mean squares, exerts a constant force."""
+def is_nonlinear(system: PiecewiseSystem) -> bool:
+    """Whether an element switches; one that exerts a constant force moves the static equilibrium alone."""
     lower, upper = system.mechanics.limits.T
-    return bool(np.any(lower < upper) or (not definition.is_peak and np.any(upper != 0.0)))
+    return bool(np.any(lower < upper))
 
 
 def _is_held(system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions) -> bool:

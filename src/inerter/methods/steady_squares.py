@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from inerter.errors import ErrorSource, Status
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.observe import trajectory_of
+from inerter.simulation.observe import outputs_at_rest, trajectory_of
 from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, settle
 from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
@@ -50,9 +50,11 @@ def steady_squares(
 ) -> Squares:
     """Mean squares over the period of `table` once the motion repeats, of deviations from the mean if `about_mean`.
 
-    The first outputs pass through `filters`, in the frequency domain: as they do once the filters have settled too.
+    Otherwise they are of deviations from static equilibrium, which a constant force such as a preload moves. The first
+    outputs pass through `filters`, in the frequency domain: as they do once the filters have settled too.
     """
-    if not (about_mean or any(filters)):
+    at_rest = None if about_mean else outputs_at_rest(system, outputs)
+    if not (about_mean or any(filters) or at_rest is not None):
         found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
         if not integration.status.ok:
             return _nan_squares(len(outputs), integration.status, steady)
@@ -64,7 +66,8 @@ def steady_squares(
         return _nan_squares(len(outputs), integration.status, steady)
     count, period = trajectory.time.size - 1, float(table.time[-1] - table.time[0])
     omega = 2.0 * np.pi / period * np.arange(count // 2 + 1)
-    lines = np.array([np.abs(np.fft.rfft(trajectory[name][:count])) ** 2 for name in outputs])
+    motions = np.array([trajectory[name][:count] for name in outputs])
+    lines = np.abs(np.fft.rfft(motions if at_rest is None else motions - at_rest[:, None])) ** 2
     passed = np.ones_like(lines)
     for gain, one in zip(passed, filters, strict=False):
         if one is not None:

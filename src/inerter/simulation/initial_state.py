@@ -64,7 +64,7 @@ def _starting_velocities(system: PiecewiseSystem, rates: Matrix) -> Matrix:
     return np.asarray(-np.linalg.solve(momenta @ system.kinetic, momenta @ given))
 
 
-def _may_lie_unstrained(system: PiecewiseSystem) -> bool:
+def may_lie_unstrained(system: PiecewiseSystem) -> bool:
     """Whether nothing that switches has a force, or an elongation, at any rest."""
     limits = system.mechanics.limits
     return bool(np.all((limits[:, 0] <= 0.0) & (limits[:, 1] >= 0.0)))
@@ -74,7 +74,7 @@ def _positions(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
     """Positions at rest; those that are elongations have none of the rounding of heights."""
     count, own = system.positions.shape[0], np.array(system.kinematics.places.own)
     unstrained = np.count_nonzero(own >= 0) == count and not np.any(system.elongations[1] @ road)
-    if not np.any(force) and (unstrained or not np.any(road)) and _may_lie_unstrained(system):
+    if not np.any(force) and (unstrained or not np.any(road)) and may_lie_unstrained(system):
         return np.zeros(count)
     found = equilibrium(system, road, force)
     g = system.positions @ found.displacement + system.heights @ road

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -9,15 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.kernels.events import evaluate
+from inerter.simulation import event_driven
 from inerter.simulation.energy import energy_of
 from inerter.simulation.event_driven import Integration
-from inerter.simulation.inputs import InputTable
+from inerter.simulation.initial_state import initial_state, may_lie_unstrained
+from inerter.simulation.inputs import InputTable, tabulate
 from inerter.simulation.trajectory import Event, PeriodicState, Trajectory
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
 
 Matrix = NDArray[np.float64]
 _ROUNDING = 1e-14  # of a sum, relative to its terms
+_GLANCE = 1e-4  # s, in which nothing moves that is at rest
 
 
 def trajectory_of(integration: Integration, steady: PeriodicState | None, label: str) -> Trajectory:
@@ -40,6 +44,21 @@ def trajectory_of(integration: Integration, steady: PeriodicState | None, label:
         _evaluate=partial(_evaluate, integration, reached),
         _list_events=partial(_event_list, system, rows),
     )
+
+
+def outputs_at_rest(system: PiecewiseSystem, outputs: Sequence[str]) -> Matrix | None:
+    """Outputs in the static equilibrium (outputs,); None where nothing has a force at rest, so that all are zero.
+
+    Raises `SimulationError` if springs do not hold it.
+    """
+    if may_lie_unstrained(system):
+        return None
+    inputs = len(system.mechanism.roads) + len(system.mechanism.forces)
+    table = tabulate([None] * inputs, [0.0] * inputs, _GLANCE, _GLANCE)
+    run = event_driven.start(system, table, initial_state(system, table.value[0], "rest"))
+    run.advance(1)
+    found = trajectory_of(run, None, "at rest")
+    return np.array([found[name][0] for name in outputs])
 
 
 def _element_labels(system: PiecewiseSystem) -> list[list[tuple[str, dict[int, str]]]]:

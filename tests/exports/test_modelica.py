@@ -64,15 +64,15 @@ def test_a_compiler_simulates_it(number: int) -> None:
 def test_bridges_nodes_without_mass_and_levers() -> None:
     bridge = it.Bridge(it.Damper(3e3), it.Spring(4e4), it.Inerter(20.0), it.Damper(1e3), it.Spring(1e5))
     car = it.Mechanism(
-        coordinates=(it.Coordinate("body", 300.0), it.Coordinate("time", 0.0), it.Coordinate("wheel", 30.0)),
+        coordinates=(it.Coordinate("body", 300.0), it.Coordinate("time", 0.0), it.Coordinate("end_flange", 30.0)),
         struts=(
             it.Strut("upper", it.Spring(5e5) | it.Damper(500.0), {"body": 1.0}, {"time": 1.0}),
-            it.Strut("lower", bridge | it.Spring(2e4), {"time": 1.0}, {"wheel": 1.0}),
-            it.Strut("rocker", it.Damper(100.0), {"body": 0.5, "wheel": -1.25}, it.GROUND),
+            it.Strut("lower", bridge | it.Spring(2e4), {"time": 1.0}, {"end_flange": 1.0}),
+            it.Strut("rocker", it.Damper(100.0), {"body": 0.5, "end_flange": -1.25}, it.GROUND),
         ),
-        tyres=(it.Tyre("tyre", it.Spring(1.5e5) | it.Damper(50.0), {"wheel": 1.0}, "road"),),
+        tyres=(it.Tyre("tyre", it.Spring(1.5e5) | it.Damper(50.0), {"end_flange": 1.0}, "road"),),
         roads=(it.RoadInput("road"),),
-        forces=(it.Force("load", {"body": 1.0, "wheel": 0.5}),),
+        forces=(it.Force("load", {"body": 1.0, "end_flange": 0.5}),),
     )
     omega = frequencies()
     model = FlatModel(it.export(car, "modelica"), "vehicle.Vehicle")

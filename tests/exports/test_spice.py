@@ -78,6 +78,15 @@ def test_every_strut_of_a_vehicle_is_a_subcircuit() -> None:
     ]
 
 
+def test_struts_that_differ_by_capitals_are_told_apart() -> None:
+    """A netlist has no capital letters, and the first of two subcircuits would stand for both."""
+    struts = [it.Strut(name, it.Spring(k), {"mass": 1.0}, {}) for name, k in (("a", 1e3), ("A", 2e3), ("b", 3e3))]
+    text = it.export(it.Mechanism((it.Coordinate("mass", 1.0),), tuple(struts)), "spice")
+    assert re.findall(r"^\.subckt (\w+) ", text, re.MULTILINE) == ["a_1", "A_2", "b"]
+    assert re.findall(r"^\.ends (\w+)$", text, re.MULTILINE) == ["a_1", "A_2", "b"]
+    assert "* subcircuits: a_1, A_2, b" in text
+
+
 def test_parts_of_one_name_are_told_apart() -> None:
     parts = re.findall(
         r"^([LRC]\w+) ", it.export(it.Spring(1e3) | it.Spring(2e3) - it.Spring(3e3), "spice"), re.MULTILINE

@@ -35,7 +35,7 @@ _KEYWORDS = frozenset(
     "partial protected public pure record redeclare replaceable return stream then true type when while within "
     "time abs sign sqrt mod rem min max sum product pre edge change sample smooth noEvent terminal terminate "
     "assert reinit delay cardinality homotopy sin cos tan asin acos atan atan2 exp log size zeros ones fill Real "
-    "Integer Boolean String StateSelect Modelica Inerter Vehicle ground".split()
+    "Integer Boolean String StateSelect Modelica Inerter Vehicle ground end_flange".split()
 )
 _INERTER = f"""\
   model Inerter "Force over the relative acceleration of both flanges"

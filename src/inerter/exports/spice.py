@@ -6,7 +6,7 @@ Each strut is a subcircuit between the nodes `upper` and `lower`, whose admittan
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
@@ -21,7 +21,8 @@ _WORD = re.compile(r"[^A-Za-z0-9_]")
 
 
 def _make(request: ExportSpec, suffix: str) -> str:
-    networks, notes = request.linear_networks()
+    found, notes = request.linear_networks()
+    networks = dict(zip(_subcircuit_names(list(found)), found.values(), strict=True))
     head = [f"* {' '.join((request.title or 'struts').split())}, written by inerter"]
     if len(networks) > 1 or request.title:
         head.append(f"* subcircuits: {', '.join(networks)}")
@@ -37,7 +38,27 @@ def _make(request: ExportSpec, suffix: str) -> str:
 def subcircuit(name: str, network: Network) -> list[str]:
     """Lines of the subcircuit of a linear network without free values."""
     lines = list(_Netlist().lines(network, "upper", "lower"))
-    return [f".subckt {_WORD.sub('_', name)} upper lower", *lines, f".ends {_WORD.sub('_', name)}"]
+    return [f".subckt {name} upper lower", *lines, f".ends {name}"]
+
+
+def _subcircuit_names(names: Sequence[str]) -> list[str]:
+    """Names of subcircuits: those that differ by capitals alone are numbered all, so that none stands for another."""
+    small = [name.lower() for name in names]
+    numbered = [f"{name}_{small[: i + 1].count(name.lower())}" for i, name in enumerate(names)]
+    return _unique(new if small.count(name.lower()) > 1 else name for name, new in zip(names, numbered, strict=True))
+
+
+def _unique(names: Iterable[str]) -> list[str]:
+    """Names in the syntax of SPICE, which does not tell capital letters from others, each different."""
+    found: dict[str, str] = {}
+    for name in names:
+        stem = _WORD.sub("_", name)
+        made, number = stem, 1
+        while made.lower() in found:
+            number += 1
+            made = f"{stem}_{number}"
+        found[made.lower()] = made
+    return list(found.values())
 
 
 class _Netlist:
@@ -45,7 +66,7 @@ class _Netlist:
 
     def __init__(self) -> None:
         self._nodes = 0
-        self._names: set[str] = set()
+        self._names: list[str] = []
 
     def lines(self, network: Network, upper: str, lower: str) -> Iterator[str]:
         match network:
@@ -74,14 +95,9 @@ class _Netlist:
 
     def _part(self, element: Element, upper: str, lower: str) -> str:
         letter, number = _LETTERS[element.linear], element.coefficient
-        stem = f"{letter}{_WORD.sub('_', element.label)}"
-        name, count = stem, 1
-        while name.lower() in self._names:
-            count += 1
-            name = f"{stem}_{count}"
-        self._names.add(name.lower())
+        self._names = _unique([*self._names, f"{letter}{element.label}"])
         value = number if letter == "C" else 1.0 / number
-        return f"{name} {upper} {lower} {exact(value)}"
+        return f"{self._names[-1]} {upper} {lower} {exact(value)}"
 
 
 def admittance_netlist(text: str, name: str, frequencies: Mapping[str, float]) -> str:

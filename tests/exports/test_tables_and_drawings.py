@@ -5,11 +5,13 @@ from __future__ import annotations
 import io
 import re
 from dataclasses import replace
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
 import pytest
+import scipy.special
 import xarray as xr
 from designs import ALWAYS, design
 from wang_su import paper_quarter_car
@@ -55,6 +57,36 @@ def test_units_of_gains() -> None:
     assert [re.search(r"\[(.*)\]", head)[1] for head in heads.split(",")] == [  # type: ignore[index]
         *("Hz", "(m/s^2)/(m/s)", "deg", "(m/s^2)/N", "deg", "m/(m/s)", "deg", "m/N", "deg")
     ]
+
+
+@pytest.mark.campaign
+def test_curves_on_two_tracks_have_the_coherence_of_an_isotropic_surface(examples: str, tmp_path: Path) -> None:
+    """x K1(x), which no filter has, both in tables and in the figure of a study."""
+    text = Path(examples, "full-car-two-tracks.toml").read_text(encoding="utf-8")
+    file = tmp_path / "study.toml"
+    file.write_text(re.sub("coherence = {.*?}", 'coherence = { track = "1.5 m" }', text), encoding="utf-8")
+    study = load_study(file)
+    layout = next(iter(study.layouts))
+    values = {name: (one.lower * one.upper) ** 0.5 for name, one in study.design(layout).free_values().items()}
+    case = next(case for case in cases(study) if (case.layout, case.index) == (layout, "J1"))
+    car, index = study.design(layout).with_values(values), study.index("J1")
+    omega = responses(study, {case: values})["omega"].values
+    request = ExportSpec(car, "csv", frequencies=omega / (2.0 * np.pi), indices={"J1": index})
+    outputs, gains = responses_of(request).of_indices["J1"]
+    roads, speed = car.mechanism().roads, index.road.speed
+    x = omega * 1.5 / speed
+    coherence = x * scipy.special.k1(x)
+    weights = [each.weight for each in index.definition(car.mechanism()).outputs]
+    for output, weight, gain in zip(outputs, weights, gains, strict=True):
+        system = it.state_space(car, [road.name for road in roads], [output])
+        late = np.exp(-1j * np.outer(omega, [road.distance / speed for road in roads]))
+        arriving = it.frequency_response(system, omega)[:, 0] * late
+        left, right = (arriving[:, [r.side == side for r in roads]].sum(axis=1) for side in ("left", "right"))
+        both, apart = np.abs(left + right) ** 2, np.abs(left - right) ** 2
+        expected = abs(weight) * np.sqrt((both * (1.0 + coherence) + apart * (1.0 - coherence)) / 2.0)
+        assert np.allclose(gain, expected, rtol=0.0, atol=1e-7 * expected.max())
+    shown = responses(study, {case: values})["gain_J1"].isel(layout=0).transpose("output_J1", "omega")
+    assert np.allclose(shown, gains, rtol=1e-12)
 
 
 @pytest.mark.parametrize("conventions", ["exact", "paper2008"])

@@ -76,7 +76,8 @@ def _index_gains(request: ExportSpec, name: str, index: Index, omega: Matrix) ->
     except LinearSystemError as error:
         raise ExportError(f"{name}: {error}") from error
     system = problem.system(close(problem.descriptor, {}))
-    sizes = np.linalg.norm(frequency_response(system, omega, problem.pade_order), axis=2).T
+    response = problem.with_true_densities(frequency_response(system, omega, problem.pade_order), omega)
+    sizes = np.linalg.norm(response, axis=2).T
     weights = np.array([abs(output.weight) for output in problem.definition.outputs])
     return tuple(output.output for output in problem.definition.outputs), weights[:, None] * sizes
 

@@ -150,6 +150,14 @@ class LinearProblem:
         paths = tuple(path for path in self.paths if path.source == source)
         return replace(self, unfiltered=descriptor, arrivals=tuple(self.arrivals[i] for i in chosen), paths=paths)
 
+    def with_true_densities(self, response: NDArray[np.complex128], omega: Array) -> NDArray[np.complex128]:
+        """A response (omega, outputs, sources) to sources with their own densities, not those of their filters."""
+        corrected = response.copy()
+        for i, source in enumerate(dict.fromkeys(self.sources)):
+            if source in self.excesses:
+                corrected[:, :, i] *= self.excesses[source].factor(omega)[:, None]
+        return corrected
+
     def system(self, closed: LinearSystem) -> LinearSystem:
         """The closed descriptor with sources and delays."""
         return replace(closed, sources=self.sources, delays=self.delays)

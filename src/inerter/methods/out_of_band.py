@@ -234,9 +234,7 @@ def _squared_gains(design: OnRoads, speeds: Array) -> tuple[Array, Array]:
     lines = _lines_of(excitation)
     omega, sources = lines.omega, list(dict.fromkeys(linear.problem.sources))
     here = modal_response(linear.system(speeds), omega, linear.problem.pade_order)
-    for i, source in enumerate(sources):
-        if source in linear.problem.excesses:
-            here[:, :, i] *= linear.problem.excesses[source].factor(omega)[:, None]
+    here = linear.problem.with_true_densities(here, omega)
     at_once = linear.at_inputs(speeds)
     responses = modal_response(at_once, lines.images.ravel(), within=_IMAGES_WITHIN)
     responses = responses.reshape(*lines.images.shape, len(at_once.outputs), len(at_once.inputs))

@@ -55,7 +55,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: b
         angles = np.full_like(gains, np.nan)
         for layout, (problem, system) in mine.items():
             with np.errstate(over="ignore", invalid="ignore"):
-                response = frequency_response(system, omega, problem.pade_order)
+                response = problem.with_true_densities(frequency_response(system, omega, problem.pade_order), omega)
                 sizes = np.abs(response)
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
             number = list(study.layouts).index(layout)

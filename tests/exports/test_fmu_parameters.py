@@ -167,3 +167,21 @@ def test_a_state_brings_its_values(kind: str, masters: list[Master], tmp_path: P
     later = driven(one, height[100:], slope[100:], 1e-3, shown)
     other.restore(saved, 0.1)
     assert np.array_equal(driven(other, height[100:], slope[100:], 1e-3, shown), later)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_values_are_finite_numbers(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"{kind}.fmu"
+    path.write_bytes(it.export(paper_quarter_car(REAL), kind))
+    master = Master(path)
+    for name in ("c", "f", "road_velocity"):
+        for value in (np.inf, np.nan):
+            with pytest.raises(Exception, match="failed with status"):
+                master.set(name, value)
+    with pytest.raises(Exception, match="failed with status"):
+        master.step(np.inf)
+    master.time = 0.0
+    master.step(1e-3)
+    assert np.all(np.isfinite(master.get("sprung_acceleration", "strut_force")))
+    assert "values are finite numbers" in master.messages
+    master.close()

@@ -140,7 +140,7 @@ FMI2 Status fmi2SetRealInputDerivatives(Component c, const Reference r[], size_t
     for (i = 0; i < n; i++) {
         const Variable one = variable(r[i]);
         if (one.kind == MOTION) continue; /* its derivatives are inputs themselves */
-        if (one.kind != INPUT || order[i] < 1) return ERROR;
+        if (one.kind != INPUT || order[i] < 1 || !isfinite(value[i])) return ERROR;
         if (order[i] < ORDERS) model->now.e[order[i]][one.number] = value[i];
         else if (value[i] != 0.0) return DISCARD;
         model->now.stale = 1;

@@ -80,6 +80,10 @@ static Status write_values(Model *model, const unsigned references[], size_t n, 
     size_t i;
     for (i = 0; i < n; i++) {
         const Variable one = variable(references[i]);
+        if (!isfinite(value[i])) {
+            tell(model, ERROR, "values are finite numbers");
+            return ERROR;
+        }
         switch (one.kind) {
         case INPUT:
             model->now.e[one.order][one.number] = value[i];
@@ -153,7 +157,7 @@ static Status warn(Model *model)
 static Status take_step(Model *model, double time, double step)
 {
     Status status = OK;
-    if (!(step >= 0.0)) return ERROR;
+    if (!(step >= 0.0) || !isfinite(step) || !isfinite(time)) return ERROR;
     model->now.time = time;
     if (!prepare(model)) return ERROR;
     if (STRUT && step > 0.0) status = warn(model);

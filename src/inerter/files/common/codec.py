@@ -144,7 +144,7 @@ class Declaration:
     name: str = ""  # in files
     attribute: str = ""  # in Python
     words: str = ""  # of its number, in sentences
-    implied: bool = False  # whether the file may leave it out because other keys say it
+    implied: str = ""  # lines of other keys that say it in its place
     former: str = ""  # its name in files of the previous version, which is read too
 
     def name_in(self, raw: Mapping[str, Any]) -> str:
@@ -237,7 +237,8 @@ class TableCodec(Codec):
                     context.at(one.former).add(EntryError(fault=both, expected="one of the two"))
             elif one.default is REQUIRED:
                 example = one.example or f"a section [{'.'.join((*context.place, one.name))}]"
-                context.at(one.name).add(EntryError(fault="missing", expected=example))
+                wanted = f"{example}, or {one.implied}" if one.implied else example
+                context.at(one.name).add(EntryError(fault="missing", expected=wanted))
                 values[one.attribute] = INVALID
             else:
                 values[one.attribute] = one.default

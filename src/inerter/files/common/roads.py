@@ -38,6 +38,7 @@ ROAD_QUANTITIES = sorted(fields_of(Road), key=lambda f: f.name != "speed")  # wh
 _LEVEL = "level"
 _FORMS = 'track = "1.5 m", level = 0.6 or wavenumber = "0.2 cycle/m"'
 _ROUGH = ("roughness", "class", "profile")  # keys that say how rough a road is
+_OTHER_SOURCES = 'class = "C", or profile = "road.csv"'
 _OF_PROFILES = ("track", "columns", "units", "interval", "sampling")
 _SIDES = tuple(filter(None, TRACKS))
 _WAVINESS, _TO = 1.5, 2.5  # of profiles for which a road of waviness 2 stands without a warning
@@ -164,7 +165,7 @@ def _rough_in_one_way(table: Mapping[str, Any]) -> Mapping[str, Any]:
 def road_codec(*, rough: bool = True) -> TableCodec:
     """The section [road], as a dictionary of its values; not all that drive on one need its roughness (`rough`)."""
     speed, roughness, *others = map(declaration_of, ROAD_QUANTITIES)
-    roughness = replace(roughness, implied=True, default=REQUIRED if rough else None)
+    roughness = replace(roughness, implied=_OTHER_SOURCES, default=REQUIRED if rough else None)
     return TableCodec(
         (
             *(speed, roughness, *others),

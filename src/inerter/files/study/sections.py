@@ -241,7 +241,10 @@ class Settings:
     """Indices to compute, and the methods that compute them."""
 
     indices: tuple[str, ...] = key(
-        _INDICES, "Performance indices of each layout.", 'indices = ["J1", "J3", "J5"]', implied=True
+        _INDICES,
+        "Performance indices of each layout.",
+        'indices = ["J1", "J3", "J5"]',
+        implied='trade_off = ["J1", "J3"]',
     )
     conventions: str = key(
         word("a set of conventions", CONVENTIONS),

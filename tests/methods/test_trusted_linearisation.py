@@ -164,3 +164,31 @@ def test_the_motion_across_a_friction_that_sticks_is_not_known(force):
     assert [str(status[name].kind) for name in status] == ["inaccurate", "inaccurate", "ok"]
     many = [it.RandomResponse({name: 1.0}, shaped) for name in status]
     assert np.isnan(it.evaluate_many(mass, many, {}, METHOD)).tolist() == [[True, True, False]]
+
+
+def linked(number):
+    """A light link with friction beside the strut of a random car: its friction hardly matters but to its own force."""
+    rng = np.random.default_rng([1969, number])
+
+    def between(low, high):
+        return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+    strut = Spring(between(1e4, 4e4)) | Damper(between(800.0, 4e3))
+    car = it.QuarterCar(between(150.0, 500.0), between(20.0, 60.0), between(1e5, 3e5), strut).mechanism()
+    f, k = Friction(between(2.0, 40.0), "f"), Spring(10.0)
+    light, stiff = Damper(1.0), Spring(between(1e5, 1e7))
+    links = (Spring(between(5.0, 5e3)) | f, f - Damper(between(1e3, 5e3)) | k, light | f, (f | light) - stiff | k)
+    link = it.Strut("link", links[number % len(links)], {"sprung": 1.0}, {"unsprung": 1.0})
+    return replace(car, struts=(*car.struts, link))
+
+
+@pytest.mark.parametrize("number", sampled(range(12), (0, 1), kept=4))
+def test_the_force_of_a_link_is_not_that_of_its_equivalent_damper(number):
+    car, road = linked(number), it.Road(roughness=1e-6, speed=20.0)
+    index = it.RandomResponse({"link_force": 1.0}, road)
+    found = it.evaluate(car, index, METHOD)
+    simulated = it.evaluate(car, index, it.ExpectedValue(realisations=8))
+    off, error = simulated.value / found.value - 1.0, simulated.standard_error / found.value
+    assert abs(off) <= found.error_bound + 4.0 * error
+    assert found.status.ok == (found.error_bound <= METHOD.promise)
+    assert it.evaluate(car, it.TyreLoad(road), METHOD).status.ok

@@ -36,7 +36,6 @@ class Seat(Stage):
             "kg",
             "Mass of the occupant and of the moving part of the seat.",
             "60 kg",
-            words="mass on the seat",
             may_be_free=True,
             usual=(2.0, 500.0),
         )

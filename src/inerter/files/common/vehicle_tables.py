@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from inspect import getdoc
 from typing import Any, ClassVar
 
@@ -33,7 +33,7 @@ from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.seat import Seat
 
 MECHANISM = "mechanism"
-SEAT = "seat"
+SEAT, SEAT_MASS = "seat", "mass on the seat"
 NOTHING: Mapping[str, Any] = {}
 NO_MEASURES: Mapping[str, Any] = {"comfort": NOTHING, "tyre_load": None, "load_input": None, "load_output": None}
 
@@ -280,7 +280,7 @@ class MechanismTable:
 
 def _seat(free: bool) -> Declaration:
     """The table of a seat, whose mass may be `free`."""
-    mass = next(declaration_of(one, free=free) for one in fields_of(Seat))
+    mass = replace(next(declaration_of(one, free=free) for one in fields_of(Seat)), words=SEAT_MASS)
     table = table_of(SeatTable, keys=(mass, *keys_in(SeatTable)), make=dict, about=str(SeatTable.__doc__))
     example = 'a section [vehicle.seat] with mass = "60 kg"'
     return Declaration(table, "A seat with its occupant.", example, None, SEAT, SEAT, SEAT)

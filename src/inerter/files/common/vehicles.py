@@ -14,7 +14,7 @@ from inerter.errors import InerterError, MechanismError
 from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.vehicle_tables import MECHANISM, SEAT, Inertia, Length, forces_of
+from inerter.files.common.vehicle_tables import MECHANISM, SEAT, SEAT_MASS, Inertia, Length, forces_of
 from inerter.formatting import format_number, format_quantity, format_range
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
@@ -76,7 +76,7 @@ def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | Non
     """Name, value and unit of each quantity of a vehicle, or name, None and a text, for reports."""
     yield from _form(model).words(_without_seat(values))
     if SEAT in values:
-        yield from _words_of(Seat, values[SEAT])
+        yield from ((SEAT_MASS, value, unit) for _, value, unit in _words_of(Seat, values[SEAT]))
         yield "seat mounted at", None, _place(values[SEAT]["place"] or {"sprung": 1.0})
 
 

@@ -150,6 +150,8 @@ def test_a_fit_that_is_withheld_offers_what_can_be_done(
     assert model_offered in [offer.get("model") for offer in offers]
     assert {"section": "record", "key": "fixture_mass", "example": "0.3 kg"} in [offer.get("ask") for offer in offers]
     assert all(cause["sentence"] and 0.0 < cause["explained"] <= 1.0 for cause in result["causes"])
+    assert any("“Fixture mass”" in said for said in result["findings"])  # the name of its button
+    assert not any("fixture_mass" in said or "--" in said for said in result["findings"])
     assert result["asked"] == {"model": model, "config": {}}
     for offer in offers:  # each is a request that the library takes
         stated = {offer["ask"]["section"]: {offer["ask"]["key"]: offer["ask"]["example"]}} if "ask" in offer else {}

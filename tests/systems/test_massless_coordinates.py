@@ -25,7 +25,7 @@ from inerter import (
     Strut,
     Tyre,
 )
-from inerter.errors import InerterError, MechanismError
+from inerter.errors import InerterError, LinearSystemError, MechanismError
 from inerter.norms.exact import h2_exactly
 
 TOP, BOTTOM = {"body": 1.0}, {"wheel": 1.0}
@@ -167,3 +167,13 @@ def test_norm_with_a_massless_coordinate_by_quadrature_of_the_nodal_solution():
     norm = it.h2_norm(it.state_space(car, inputs=["road"], outputs=["body_acceleration"]))
     response = lambda w: Nodal(car, w).response("body_acceleration", "road")[:, None].astype(complex)  # noqa: E731
     assert norm == pytest.approx(h2_by_quadrature(response, [0.0], 2e4), rel=1e-7)
+
+
+def test_a_force_on_what_only_springs_hold_leaves_it_no_velocity():
+    body, node = it.Coordinate("body", 100.0), it.Coordinate("node", 0.0)
+    upper = it.Strut("upper", it.Spring(1e4, "k1"), upper={"body": 1.0}, lower={"node": 1.0})
+    lower = it.Strut("lower", it.Spring(2e4, "k2"), upper={"node": 1.0}, lower=it.GROUND)
+    held = it.Mechanism((body, node), (upper, lower), forces=(it.Force("push", {"node": 1.0}),))
+    assert it.state_space(held, ["push"], ["body_displacement"]).D[0, 0] == 0.0
+    with pytest.raises(LinearSystemError, match=r"A force acts on node, which only springs hold"):
+        it.state_space(held, ["push"], ["k2_velocity"])

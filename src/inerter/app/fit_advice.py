@@ -30,6 +30,15 @@ def further_offers(found: IdentificationResult) -> list[Offer]:
     return [offer for i, offer in enumerate(offered) if offer not in offered[:i]]
 
 
+def findings(found: IdentificationResult) -> list[str]:
+    """Findings on the estimates in sentences that name the offers of the page in place of options."""
+    return ["".join(map(_as_offer, finding.text)) for finding in found.fit.findings]
+
+
+def _as_offer(part: str | Remedy) -> str:
+    return f"“{next(_offers([part]))['label']}”" if _needs_options([part]) else as_options([part])
+
+
 def _cause(explanation: Explanation) -> dict[str, Any]:
     remedy = explanation.name.remedy(explanation.details)
     named = str(explanation.details.get("model", "")).split(" or ")

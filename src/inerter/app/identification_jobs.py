@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.app.documents import PATH
-from inerter.app.fit_advice import causes, further_offers
+from inerter.app.fit_advice import causes, findings, further_offers
 from inerter.app.kinds import RESULTS, Tell
 from inerter.errors import RecordError
 from inerter.files.common.folder import WriteMode, open_results
@@ -46,6 +46,7 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
         "reason": unreliability_reason(found),
         "causes": causes(found),
         "offers": further_offers(found),
+        "findings": findings(found),
         "asked": {"model": body.get("model"), "config": body.get("config") or {}},
         "device": _device(found),
     }

@@ -197,8 +197,8 @@ class Pattern:
         for mount in mechanism.mounts():
             labels = {element.label for element in mount.network.elements()}
             forces = {of_mount(mount)[0], *map(force_of, labels), *(["force"] if len(mechanism.struts) == 1 else [])}
-            here = [name in labels for name in self.parts.dampers]
-            found |= np.outer([name in forces for name in outputs], here)
+            for i in (i for i, name in enumerate(self.parts.dampers) if name in labels):
+                found[:, i] |= [name in forces for name in outputs]
         return found
 
     def carried(self, values: Mapping[str, float]) -> Array:

@@ -141,7 +141,8 @@ def _check_ties(elements: Sequence[Element], free: Mapping[str, object]) -> None
             if name not in free:
                 raise DesignError(
                     f"{element.label!r} is tied to {name!r}, which is not a free value; free values: "
-                    f"{', '.join(free) or 'none'}. If {name!r} is a number, give this value as a number too."
+                    f"{', '.join(free) or 'none'}. If {name!r} is a number, give this value as a number too; if it is "
+                    "free elsewhere only, put its element into this strut as well."
                 )
 
 

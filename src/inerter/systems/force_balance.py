@@ -73,5 +73,9 @@ def _on_forces(frame: Frame, row: Matrix) -> Matrix:
     at, force = frame.slots, np.zeros(frame.unknowns)
     force[at.a1], _, force[at.y], force[at.z] = frame.split.rate(row)
     if at.settles and np.any(force[at.z]):
-        raise LinearSystemError("How fast springs settle between each other under a force that jumps is not known.")
+        at_once = ", ".join(node for node, lever in zip(frame.graph.nodes, row, strict=True) if lever)
+        raise LinearSystemError(
+            f"A force acts on {at_once}, which only springs hold: they follow it at once, and a force that jumps "
+            "leaves them no velocity. Give it a mass, or a damper beside a spring."
+        )
     return force

@@ -140,8 +140,7 @@ function Fit({ store, api, job }) {
           ${[0, 1].map((i) => html`<td class="number">${result.shown[name][i]}</td>`)}
           <td>${each.identified ? "" : each.sentence}</td></tr>`)}
       <//>
-      ${(result.notes ?? []).map((/** @type {any} */ note) => html`<p class="quiet">
-        ${typeof note === "string" ? note : (note.sentence ?? "")}</p>`)}
+      ${(result.findings ?? []).map((/** @type {string} */ each) => html`<p key=${each} class="quiet">${each}</p>`)}
       ${result.device
         ? html`<button type="button" class="main"
           onClick=${() => void takeIn(store, api, result)}>Take the device into the editor</button>`

@@ -654,8 +654,7 @@ ${new XMLSerializer().serializeToString(n)}
           ${[0,1].map(i=>f`<td class="number">${o.shown[s][i]}</td>`)}
           <td>${r.identified?"":r.sentence}</td></tr>`)}
       <//>
-      ${(o.notes??[]).map(s=>f`<p class="quiet">
-        ${typeof s=="string"?s:s.sentence??""}</p>`)}
+      ${(o.findings??[]).map(s=>f`<p key=${s} class="quiet">${s}</p>`)}
       ${o.device?f`<button type="button" class="main"
           onClick=${()=>{qf(t,e,o)}}>Take the device into the editor</button>`:f`<p>${Qo(o)}</p>`}
       ${(o.offers??[]).map(s=>f`<${ll} key=${s.label} store=${t}

@@ -57,7 +57,7 @@ def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str,
         assert (one["value"] is None) <= (one["status"] != "ok")
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> None:
     by, study = {one["parameter"]: one for one in told["break_even"]}, study_from(FEW)
     method = study.method(by["f"]["method"])

@@ -115,18 +115,17 @@ class DatasetBuilder:
 
     def _enter_values(self, number: int, outcome: Outcome) -> None:
         arrays, index = self._arrays, outcome.index
-        best = False  # of infinite values none is
+        best = False  # of infinite values none is; the design that misses the limits by least has its parameters
         for m, method in enumerate(self.study.evaluate):
             values = outcome.values.get(method, {})
-            value = outcome.feasible_values(method).get(index, np.nan)
-            arrays["value"][number, m] = value
+            arrays["value"][number, m] = outcome.feasible_values(method).get(index, np.nan)
             arrays["other_value"][number, m] = [values.get(other, np.nan) for other in self.study.indices]
             bounds = outcome.error_bounds.get(method, {})
             arrays["error_bound"][number, m] = bounds.get(index, np.nan)
             arrays["other_error_bound"][number, m] = [bounds.get(other, np.nan) for other in self.study.indices]
             error = outcome.standard_errors.get(method, {}).get(index)
             arrays["standard_error"][number, m] = np.nan if error is None else error
-            best = best or isfinite(value)
+            best = best or isfinite(values.get(index, np.nan))
         for name, parameter in outcome.parameters.items() if best else ():
             place = number, self._columns[name]
             low, high = outcome.ranges.get(name, (parameter, parameter))

@@ -32,7 +32,7 @@ FOLDERS = {
     ("macos-arm", "fmu3"): "aarch64-darwin",
 }
 PROCESSORS = {"linux-arm": "aarch64", "windows": "x86_64", "macos": "x86_64", "macos-arm": "aarch64"}
-REGULAR = [("linux-arm", "fmu3"), ("macos-arm", "fmu")]
+REGULAR = [("macos-arm", "fmu3")]
 
 
 @pytest.mark.timeout(900)

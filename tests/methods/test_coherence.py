@@ -170,7 +170,7 @@ def test_64_simulated_roads(coherence):
     check_simulated(64, coherence, lowest=0.1, near=0.05, seed=3)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_roads_of_the_expected_value():
     """With friction that hardly matters, means over random roads are near the norm without it."""
     vehicle = car(np.random.default_rng(5))

@@ -227,7 +227,7 @@ def test_corrections_are_called_with_the_types_that_they_are_prepared_for():
     assert len(corrections.ready().signatures) == 1
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_search_minimises_the_value_that_is_reported():
     """Values and slopes of the search against the quadrature, whose minimum over the damper the optimum has."""
     speed, track = 10.0, 0.5

@@ -221,12 +221,11 @@ class Pattern:
             force = values[name] * frequency_response(close(velocities, doubled), omega)[:, [i]]
             change = frequency_response(close(outputs, doubled), omega) - before
             change, force = (np.sum(np.abs(one) ** 2, axis=2) for one in (change, force))
-            part, density = (
-                np.where(force > 0.0, change / np.maximum(force, np.finfo(float).tiny), 0.0),
-                force * omega[:, None],
-            )
+            part = np.where(force > 0.0, change / np.maximum(force, np.finfo(float).tiny), 0.0)
+            density = force * omega[:, None]
             means = [np.sum(part * density, axis=0), np.sum(part[_GRID:] * density[:-_GRID], axis=0)]
-            found[:, i] = np.sqrt(np.max(means, axis=0) / np.sum(density))
+            total = np.sum(density)  # zero across a friction that symmetry keeps from moving
+            found[:, i] = np.sqrt(np.max(means, axis=0) / total) if total > 0.0 else 0.0
         return np.where(self.beside, found, 0.0)
 
     def left_out(self, points: Array, dampers: Dampers) -> Array:

@@ -161,7 +161,7 @@ def _free_value_problems(study: Study) -> Iterator[Problem]:
     named = elements_used(study)
     used = [name for name in named if name in study.free_networks or isinstance(study.elements[name].value, Free)]
     in_vehicle = free_in_vehicle(study)
-    for name in in_vehicle.keys() & study.elements.keys():
+    for name in (name for name in in_vehicle if name in study.elements):
         keys = ("vehicle", *in_vehicle[name][0].key.split("."))
         yield at(keys, fault=f"free, and there is an element {name} too", expected="another name of the element")
     used += in_vehicle

@@ -148,6 +148,21 @@ def test_a_damper_that_the_message_suggests_suffices():
     assert is_positive_real(np.polyadd(n, damping * np.array(d)), d)
 
 
+@pytest.mark.parametrize("damping", [Fraction(1, 10), Fraction(1, 1000), Fraction(1, 10**6)])
+def test_the_damper_that_the_message_suggests_suffices_at_a_sharp_resonance(damping):
+    """s / (s^2 + damping s + 1) squared: its smallest real part lies in a dip as narrow as the resonance."""
+    n, d = [Fraction(1), 0, 0], [Fraction(c) for c in multiply([1, damping, 1], [1, damping, 1])]
+    with pytest.raises(NotPositiveRealError, match="Add a damper of slightly more") as found:
+        realise(n, d)
+    needed = -Fraction(found.value.admittance.real)
+
+    def with_damper(c):
+        return add(n[::-1], [c * each for each in d[::-1]])[::-1]
+
+    assert is_positive_real(with_damper(needed * Fraction(1000001, 1000000)), d)
+    assert not is_positive_real(with_damper(needed * Fraction(999999, 1000000)), d)
+
+
 WRONG = {
     "empty": (([], [1.0]), "numerator .* got an empty one"),
     "nan": (([1.0, float("nan")], [1.0]), "coefficient nan"),

@@ -277,3 +277,10 @@ def test_branches_that_are_apart_are_found_again(values, in_series):
 def test_an_admittance_beyond_double_precision_is_refused_with_what_was_reached():
     with pytest.raises(SynthesisError, match="No network with double-precision values"):
         realise([10**400, 0], [1])
+
+
+def test_inertances_of_any_size_have_a_network_or_a_reason():
+    for size in (1e-290, 1e300):
+        assert {getattr(one, "inertance", size) for one in realise([size, 1], [1]).elements()} == {size}
+    with pytest.raises(SynthesisError, match="No network with double-precision values"):
+        realise([5e-324, 1], [1])

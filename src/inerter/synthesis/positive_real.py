@@ -23,12 +23,14 @@ from inerter.formatting import format_complex, format_number, format_quantity
 from inerter.systems.polynomials import (
     Polynomial,
     add,
+    derivative,
     greatest_common_divisor,
     mirror,
     multiply,
     positive_roots,
     primitive,
     quotient,
+    refine_positive_roots,
     scale_by,
     trim,
     value,
@@ -113,8 +115,11 @@ def find_violation(ratio: Ratio) -> Violation | None:
     real, square = real_part(n, d), real_part(d, d)
     points = _points_of_negative_sign(real)
     if points:
+        is_bounded = len(n) <= len(d) and _is_hurwitz(d)
+        if is_bounded:
+            points += [x for x in _extremes(real, square) if value(real, x) < 0]
         lowest, x = min((_real_admittance(real, square, x), x) for x in points)
-        return Violation(1j * math.sqrt(x), complex(_to_float(lowest)), len(n) <= len(d) and _is_hurwitz(d))
+        return Violation(1j * math.sqrt(x), complex(_to_float(lowest)), is_bounded)
     weight = _typical_size(n, d)
     total = add(scale_by(n, weight.denominator), scale_by(d, weight.numerator))
     return None if _is_hurwitz(total) else Violation(_rightmost_root(total), complex(_to_float(-weight)))
@@ -160,6 +165,11 @@ def _points_of_negative_sign(p: Polynomial) -> list[Fraction]:
         stretches.append([low + (high - low) * Fraction(i, _INNER) for i in range(1, _INNER)])
     found = [x for stretch in stretches if value(p, stretch[0]) < 0 for x in stretch]
     return [Fraction(0), *found] if p and p[0] < 0 else found
+
+
+def _extremes(p: Polynomial, square: Polynomial) -> list[Fraction]:
+    """Points x > 0 at which p(x) / square(x) is stationary."""
+    return refine_positive_roots(add(multiply(derivative(p), square), scale_by(multiply(p, derivative(square)), -1)))
 
 
 def _real_admittance(p: Polynomial, square: Polynomial, x: Fraction) -> Fraction:

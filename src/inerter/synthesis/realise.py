@@ -112,7 +112,7 @@ def _at(p: Polynomial, logarithms: Floats, angle: float) -> tuple[NDArray[np.com
     sizes = np.array([math.log2(abs(p[i])) + i * logarithms for i in powers])
     scale = sizes.max(axis=0)
     terms = np.exp2(sizes - scale)
-    turns = np.array([math.copysign(1.0, p[i]) * np.exp(1j * angle * i) for i in powers])
+    turns = np.array([(1.0 if p[i] > 0 else -1.0) * np.exp(1j * angle * i) for i in powers])
     return turns @ terms, terms.sum(axis=0), scale
 
 

@@ -242,6 +242,38 @@ def test_free_values_beside_the_network_are_found_with_it():
     assert one.parameters == pytest.approx(alone.parameters, rel=1e-5)
 
 
+def test_a_free_value_beside_the_network_stays_apart_whatever_its_name():
+    """An element `valve` whose free value is called as the first damper of a network would be."""
+
+    def with_valve(name: str) -> it.QuarterCar:
+        strut = Spring(120e3) | Damper(it.free(1e2, 1e5, name), "valve") - it.Spring(5e5, "top")
+        return paper_quarter_car(strut | it.any_network(1, dampers=(1e2, 1e5)))
+
+    (named,), (other,) = (it.search(with_valve(name), INDICES["comfort"], NORM).ranking for name in ("c1", "x"))
+    assert named.value == pytest.approx(other.value, rel=1e-9)
+    assert sorted(named.parameters) == ["c1", "c2"]
+
+
+def test_free_values_beside_the_network_that_are_at_a_bound_are_marked():
+    strut = Spring(it.free(8e4, 9e4, name="k")) | it.any_network(1, dampers=BOUNDS["dampers"])
+    (one,) = it.search(paper_quarter_car(strut), INDICES["comfort"], NORM, starts=4).ranking
+    assert one.parameters["k"] == 8e4
+    assert one.active_bounds == {"k": "lower"}
+    front = it.search(paper_quarter_car(strut), (INDICES["comfort"], INDICES["load"]), NORM, points=3, starts=4).front
+    assert front[0].active_bounds == {"k": "lower"}
+
+
+def test_free_inerters_beside_the_network_stay_ideal():
+    strut = Spring(120e3) | it.Inerter(it.free(1, 50, "b")) | Damper(3e3)
+    place = it.any_network(1, inerters=(1, 50))
+    (one,) = it.search(paper_quarter_car(strut | place), INDICES["comfort"], NORM, starts=4).ranking
+    (real,) = it.with_friction_and_elasticity([one], it.StatisticalLinearisation(), frictions=[10.0])
+    device = it.RealInerter().network(it.Inerter(one.parameters["b1"], "b1"), 10.0)
+    fixed = Spring(120e3) | it.Inerter(one.parameters["b"]) | Damper(3e3) | device
+    expected = it.evaluate(paper_quarter_car(fixed), INDICES["comfort"], it.StatisticalLinearisation())
+    assert real.with_friction[10.0].value == pytest.approx(expected.value, rel=1e-12)
+
+
 def test_an_index_that_depends_on_what_carries_weight():
     """Static loads are known only with a spring between body and wheel, which here the network has to be."""
     coefficient = it.DynamicLoadCoefficient(ROAD)

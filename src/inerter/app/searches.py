@@ -245,7 +245,9 @@ class _Ranking:
             "tree": tree_of(network),
             "n_elements": topology.size,
             "elements": {name: f"{element.value!r} {element.unit}" for name, element in elements.items()},
-            "active_bounds": {new_names[name]: end for name, end in plan.active_bounds(topology, values).items()},
+            "active_bounds": {
+                new_names.get(name, name): end for name, end in plan.active_bounds(topology, parameters).items()
+            },
             "values": texts_of(self.study, {name: value for name, value in parameters.items() if name not in own}),
             "entry": {mount: replace_in_expression(text, chosen) for mount, text in entry.items()}
             if isinstance(entry, Mapping)

@@ -140,8 +140,7 @@ def collect_front(
     """The result from the fronts by number of elements."""
     first, known = plans[0], dict[FrontDesign, FrontNetwork]()
     for one in dict.fromkeys(design for several in fronts.values() for design in several):
-        own = [one.parameters[name] for name in one.topology.names(first.taken_names)]
-        layout, active = first.topology_text(one.topology), first.active_bounds(one.topology, own)
+        layout, active = first.topology_text(one.topology), first.active_bounds(one.topology, one.parameters)
         known[one] = FrontNetwork(one.topology, layout, one.values, one.parameters, active, tuple(plans))
     told = {layout: f"{result.symbol}: {reason}" for result in searches for layout, reason in result.failed}
     told |= {first.topology_text(topology): reason for topology, reason in (reasons or {}).items()}

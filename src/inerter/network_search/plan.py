@@ -6,7 +6,7 @@ A norm over random roads or forces without delays is searched in compiled code t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -20,11 +20,11 @@ from inerter.methods.method import Method, check_request
 from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index, network_kernel
 from inerter.methods.norm import is_exact_norm
 from inerter.network_search.network_optimum import SearchedNetwork
-from inerter.networks.elements import Damper, Element, Network, Spring, free
+from inerter.networks.elements import Damper, Element, Free, Network, Spring, free
 from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
 from inerter.optimisation.limits import Limit, check_limits
-from inerter.optimisation.optimise import AGREEMENT, optimise, quasi_random_points
+from inerter.optimisation.optimise import AGREEMENT, active_bounds, optimise, quasi_random_points
 from inerter.validation import check_whole
 from inerter.vehicle.replace_values import mounted_elements, with_networks
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
@@ -34,7 +34,6 @@ _STARTS = 8  # searches for each value
 _SELDOM, _MORE = 10, 4  # where at most one start in so many finds the best value, so many times as many follow
 _GROUP = 24  # networks that are handed out together
 _CONFIRMED, _EQUAL = 6, 1e-8  # optima of a peak gain that are evaluated once more; largest relative difference
-_AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
 
 @dataclass(frozen=True)
@@ -63,8 +62,14 @@ class SearchPlan:
 
     @cached_property
     def taken_names(self) -> frozenset[str]:
-        """Names of the elements beside the free network."""
-        return frozenset(element.label for part in mounted_elements(self.vehicle) for element in part)
+        """Names of the elements and of the free values beside the free network."""
+        labels = {element.label for part in mounted_elements(self.vehicle) for element in part}
+        return frozenset(labels.union(self.other_values))
+
+    @cached_property
+    def other_values(self) -> dict[str, Free]:
+        """Free values beside the free network."""
+        return with_chosen_network(self.vehicle, self.place, Damper(1.0)).free_values()
 
     def network(self, topology: Topology) -> Network:
         """A network with free values."""
@@ -87,14 +92,11 @@ class SearchPlan:
         """Whether element values lie between their bounds."""
         return all(low <= value <= high for value, (low, high) in zip(values, self.ends(topology), strict=True))
 
-    def active_bounds(self, topology: Topology, values: Sequence[float]) -> dict[str, str]:
-        """Elements at a bound, with "lower" or "upper", by name."""
-        found = {}
-        for name, value, (low, high) in zip(topology.names(self.taken_names), values, self.ends(topology), strict=True):
-            place = np.log(value / low) / np.log(high / low)
-            if place < _AT_BOUND or place > 1.0 - _AT_BOUND:
-                found[name] = "lower" if place < _AT_BOUND else "upper"
-        return found
+    def active_bounds(self, topology: Topology, parameters: Mapping[str, float]) -> dict[str, str]:
+        """Free values at a bound, of the network and beside it, with "lower" or "upper", by name."""
+        names, ends = topology.names(self.taken_names), self.ends(topology)
+        own = {name: Free(low, high, name) for name, (low, high) in zip(names, ends, strict=True)}
+        return active_bounds({**own, **self.other_values}, parameters)
 
     def kernels(self) -> list[Any]:
         """Compiled code that the search calls."""

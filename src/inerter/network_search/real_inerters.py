@@ -67,7 +67,7 @@ def with_real_inerters(found: FoundNetwork, real: RealInerter, friction: float =
 
 
 def _with_real_inerters(vehicle: Vehicle, found: FoundNetwork, real: RealInerter, friction: float) -> Vehicle:
-    names = set(found.parameters)
+    names = found.topology.names(found.plan.taken_names)
 
     def change(element: Element) -> Network:
         own = isinstance(element, Inerter) and element.label in names

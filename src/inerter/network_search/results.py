@@ -196,7 +196,7 @@ def _to_found_network(
 ) -> FoundNetwork:
     names = one.topology.names(plan.taken_names)
     parameters = dict(zip(names, one.values, strict=True)) | one.others
-    active = plan.active_bounds(one.topology, one.values)
+    active = plan.active_bounds(one.topology, parameters)
     smaller = [other for other in like if other.size < one.topology.size]
     reduced = reduced_topology(one.topology, [active.get(name, "") for name in names]) if active else None
     if reduced is not None:

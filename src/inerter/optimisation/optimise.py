@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
@@ -233,7 +233,7 @@ def _best(
         estimate=estimate,
         parameters=parameters,
         design=design,
-        active_bounds=_active_bounds(free, parameters),
+        active_bounds=active_bounds(free, parameters),
         ranges={name: (min(c), max(c)) for name, c in zip(free, np.array(same).T.tolist(), strict=True)},
         n_starts=len(found),
         n_converged=len(same) if found else 0,
@@ -431,7 +431,8 @@ def quasi_random_points(count: int, size: int, seed: int) -> Array:
     return points
 
 
-def _active_bounds(free: dict[str, Free], parameters: dict[str, float]) -> dict[str, str]:
+def active_bounds(free: Mapping[str, Free], parameters: Mapping[str, float]) -> dict[str, str]:
+    """Free values that lie at a bound, with "lower" or "upper"."""
     active = {}
     for name, value in free.items():
         place = np.log(parameters[name] / value.lower) / np.log(value.upper / value.lower)

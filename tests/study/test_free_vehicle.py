@@ -98,6 +98,98 @@ def test_the_mass_on_a_seat_has_bounds_that_are_places_and_a_fixed_design(tmp_pa
     assert fixed["vehicle"]["seat"]["mass"] == "70.0 kg"
 
 
+MECHANISM = """
+[vehicle]
+model = "mechanism"
+roads = { road = {} }
+
+[vehicle.coordinates]
+body = "250 kg"
+wheel = { from = "20 kg", to = "90 kg" }
+pitch = { from = "80 kg m^2", to = "0.2 t m^2" }
+
+[vehicle.struts]
+s = { upper = { body = 1, pitch = "0.4 m" }, lower = { wheel = 1 } }
+t = { upper = { pitch = "1 m" }, network = "kp" }
+
+[vehicle.tyres]
+tyre = { port = { wheel = 1 }, road = "road", network = "kt" }
+
+[road]
+roughness = "5e-7 m^3/cycle"
+speed = "25 m/s"
+
+[elements]
+k = "20 kN/m"
+c = { from = "100 N s/m", to = "10 kN s/m" }
+kp = "10 kN/m"
+kt = "150 kN/m"
+
+[layouts]
+S1 = "k | c"
+
+[study]
+indices = ["J3"]
+optimise = "norm"
+"""
+INERTIAS = {"wheel": it.Free(20.0, 90.0, "wheel"), "pitch": it.Free(80.0, 200.0, "pitch")}
+
+
+def test_the_inertias_of_a_mechanism_are_chosen_as_in_python(tmp_path: Path) -> None:
+    study = assert_survives(load_text(tmp_path, MECHANISM), tmp_path)
+    check_study(study)
+    assert study.free_units == {"c": "N s/m", "wheel": "kg", "pitch": "kg m^2"}
+    found = run_study(study, tmp_path / "out").data.squeeze()
+    strut = it.Spring(20e3) | it.Damper(it.free(100.0, 10e3, name="c"))
+    coordinates = (
+        it.Coordinate("body", 250.0),
+        it.Coordinate("wheel", INERTIAS["wheel"]),
+        it.Coordinate("pitch", INERTIAS["pitch"], angle=True),
+    )
+    struts = (
+        it.Strut("s", strut, {"body": 1.0, "pitch": 0.4}, {"wheel": 1.0}),
+        it.Strut("t", it.Spring(10e3), {"pitch": 1.0}, {}),
+    )
+    tyre = it.Tyre("tyre", it.Spring(150e3), {"wheel": 1.0}, "road")
+    measures = it.PerformanceOutputs(tyre_load=(it.OutputWeight("tyre_load", 1.0),))
+    car = it.Mechanism(coordinates, struts, (tyre,), (it.RoadInput("road"),), measures=measures)
+    best = it.optimise(car, it.TyreLoad(ROAD), it.Norm(), seed=0)
+    assert float(found["value"]) == pytest.approx(best.value, rel=1e-9)
+
+
+def test_the_inertias_of_a_mechanism_have_bounds_that_are_places_and_a_fixed_design(tmp_path: Path) -> None:
+    study = load_text(tmp_path, MECHANISM)
+    known = places(study)
+    assert known["vehicle.coordinates.pitch"].value == INERTIAS["pitch"]
+    assert (known["vehicle.coordinates.pitch.to"].value, known["vehicle.coordinates.pitch.to"].unit) == (
+        200.0,
+        "kg m^2",
+    )
+    wider = with_numbers(study, [(place_of("vehicle.coordinates.wheel.from"), 10.0)])
+    assert wider.vehicle["coordinates"]["wheel"] == ("kg", it.Free(10.0, 90.0, "wheel"))
+    values = {"wheel": 30.0, "pitch": 100.0, "c": 2e3}
+    design = Design(study, "S1", "S1", study.design("S1"), values)
+    fixed = with_fixed_values(study.to_tables(), study, [design])
+    assert fixed["vehicle"]["coordinates"] == {"body": "250.0 kg", "wheel": "30.0 kg", "pitch": "100.0 kg m^2"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('to = "90 kg"', 'to = "90 kg m^2"', "unlike units, kg and kg m^2"),
+        ('from = "20 kg"', 'from = "0 kg"', "more than 0 kg"),
+        ('from = "20 kg"', 'from = "20 N"', "a mass such as"),
+        ('from = "20 kg", ', "", "expected one value, or"),
+        ("c = {", 'wheel = "1 kN/m"\nc = {', "free, and there is an element wheel too"),
+        ("""pitch = "1 m\"""", "pitch = 1", "pitch is an angle"),
+    ],
+)
+def test_what_an_inertia_cannot_be_is_said(tmp_path: Path, old: str, new: str, said: str) -> None:
+    with pytest.raises(InerterError) as error:
+        check_study(load_text(tmp_path, MECHANISM.replace(old, new)))
+    assert said in str(error.value)
+
+
 @pytest.mark.parametrize(
     ("vehicle", "settings", "said"),
     [

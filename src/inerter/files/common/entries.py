@@ -38,7 +38,7 @@ _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQ
 
 
 class Amount(NamedTuple):
-    """The value of an element in the SI unit that tells its kind."""
+    """The value of an element or of a coordinate in the SI unit that tells its kind."""
 
     unit: str
     value: float
@@ -61,7 +61,7 @@ class QuantityCodec(Codec):
     def load(self, raw: Any, context: LoadContext) -> float | Free:
         """The value in its unit, or the free value, which has the name of its key."""
         if self.free and isinstance(raw, dict):
-            return self._range(raw, context.place[-1])
+            return range_of(raw, lambda end: Amount(self.unit, positive_in(end, self.unit)), self.unit, context)[1]
         match self.least:
             case "positive":
                 return positive_in(raw, self.unit)
@@ -69,15 +69,6 @@ class QuantityCodec(Codec):
                 return not_negative_in(raw, self.unit)
             case _:
                 return parse_quantity(raw, self.unit)
-
-    def _range(self, entry: Mapping[str, Any], name: str) -> Free:
-        if set(entry) != {LOWER, UPPER}:
-            listed = ", ".join(map(quote_value, entry)) or "nothing"
-            expected = f'one value, or {{ from = "1 {self.unit}", to = "2 {self.unit}" }}'
-            raise EntryError(got=f"a table with {listed}", expected=expected)
-        lower, upper = (Amount(self.unit, positive_in(entry[end], self.unit)) for end in (LOWER, UPPER))
-        check_order(lower, upper)
-        return Free(lower.value, upper.value, name)
 
     def dump(self, value: float | Free) -> Any:
         """The text, or a table of two."""
@@ -98,6 +89,17 @@ class QuantityCodec(Codec):
     def put(self, value: Any, keys: Sequence[str], number: float) -> float | Free:
         """The number, or the free value with another bound."""
         return other_bound(value, keys[0], number) if keys else number
+
+
+def range_of(raw: Mapping[str, Any], end: Callable[[Any], Amount], unit: str, context: LoadContext) -> tuple[str, Free]:
+    """Unit and free value of a table with the two ends of a range; `unit` is that of the example in messages."""
+    if set(raw) != {LOWER, UPPER}:
+        listed = ", ".join(map(quote_value, raw)) or "nothing"
+        expected = f'one value, or {{ from = "1 {unit}", to = "2 {unit}" }}'
+        raise EntryError(got=f"a table with {listed}", expected=expected)
+    lower, upper = end(raw[LOWER]), end(raw[UPPER])
+    check_order(lower, upper)
+    return lower.unit, Free(lower.value, upper.value, context.place[-1])
 
 
 def text_of(value: float | Free, unit: str) -> str | dict[str, str]:

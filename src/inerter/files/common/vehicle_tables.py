@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from inspect import getdoc
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from inerter.errors import RegistryError, UnitError
 from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
+    REQUIRED,
     Codec,
     Declaration,
     KeyPath,
@@ -21,11 +22,24 @@ from inerter.files.common.codec import (
     table_of,
 )
 from inerter.files.common.codecs import NamesCodec, TaggedCodec, WeightsCodec
-from inerter.files.common.entries import EXPRESSION, OUTPUT_NAME, TEXT, declaration_of, not_negative, word
+from inerter.files.common.entries import (
+    EXPRESSION,
+    LOWER,
+    OUTPUT_NAME,
+    TEXT,
+    Amount,
+    declaration_of,
+    not_negative,
+    other_bound,
+    range_of,
+    text_of,
+    with_bounds,
+    word,
+)
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
-from inerter.files.common.schema import quantity_schema
-from inerter.networks.elements import NAME
+from inerter.files.common.schema import or_range_schema, quantity_schema
+from inerter.networks.elements import NAME, Free
 from inerter.units import PURE, parse_one_of, parse_quantity, quote_value
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
@@ -42,8 +56,16 @@ class Length(float):
     """The lever of an angle [m]."""
 
 
-class Inertia(float):
-    """The moment of inertia of an angle [kg m^2]."""
+class Inertia(NamedTuple):
+    """Mass [kg] of a coordinate, or moment of inertia [kg m^2] of an angle."""
+
+    unit: str
+    value: float | Free
+
+    @property
+    def angle(self) -> bool:
+        """Whether it is a moment of inertia."""
+        return self.unit != "kg"
 
 
 def lever(entry: Any) -> float:
@@ -57,8 +79,8 @@ def lever(entry: Any) -> float:
     return float(entry)
 
 
-def inertia(entry: Any) -> float:
-    """A mass, or the moment of inertia of an angle."""
+def inertia(entry: Any) -> Amount:
+    """A mass, or the moment of inertia of an angle, with its unit."""
     try:
         unit, value = parse_one_of(entry, {"kg": "", "kg m^2": ""}, "kg")
     except UnitError:
@@ -66,7 +88,14 @@ def inertia(entry: Any) -> float:
         raise EntryError(got=quote_value(entry), expected=wanted) from None
     if value < 0.0:
         raise EntryError(got=quote_value(entry), fault="negative", expected=f"more than 0 {unit}, or 0 for a node")
-    return value if unit == "kg" else Inertia(value)
+    return Amount(unit, value)
+
+
+def _bound(entry: Any) -> Amount:
+    found = inertia(entry)
+    if found.value == 0.0:
+        raise EntryError(got=quote_value(entry), fault="not positive", expected=f"more than 0 {found.unit}")
+    return found
 
 
 def part_name(name: Any) -> str:
@@ -83,34 +112,39 @@ def _levers(port: Mapping[str, float]) -> dict[str, float | str]:
 
 @dataclass(frozen=True)
 class InertiaCodec(Codec):
-    """A mass, or the moment of inertia of an angle."""
+    """A mass, or the moment of inertia of an angle, which may be `free`."""
 
     is_number: ClassVar[bool] = True
 
-    def load(self, raw: Any, context: LoadContext) -> float:
-        """The mass [kg], or an `Inertia`."""
-        return inertia(raw)
+    free: bool = False
 
-    def dump(self, value: float) -> str:
-        """The text in its unit."""
-        return f"{float(value)!r} {_unit_of(value)}"
+    def load(self, raw: Any, context: LoadContext) -> Inertia:
+        """The inertia; a free one has the name of its key."""
+        if self.free and isinstance(raw, dict):
+            return Inertia(*range_of(raw, _bound, "kg", context))
+        return Inertia(*inertia(raw))
+
+    def dump(self, value: Inertia) -> Any:
+        """The text in its unit, or a table of two."""
+        return text_of(value.value, value.unit)
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the text."""
-        return quantity_schema("kg", "kg m^2", least="not negative")
+        one = quantity_schema("kg", "kg m^2", least="not negative")
+        return or_range_schema(one) if self.free else one
 
-    def numbers(self, value: float, words: str) -> Iterator[tuple[KeyPath, Number]]:
-        """The mass or the moment of inertia; none of a node without mass."""
-        if value:
-            yield (), Number(_unit_of(value), "inertia" if isinstance(value, Inertia) else "mass", value)
+    def numbers(self, value: Inertia, words: str) -> Iterator[tuple[KeyPath, Number]]:
+        """The mass or the moment of inertia with its bounds; none of a node without mass."""
+        if value.value != 0.0:
+            yield from with_bounds(
+                Number(value.unit, "inertia" if value.angle else "mass", value.value, may_be_free=self.free)
+            )
 
-    def put(self, value: float, keys: Sequence[str], number: float) -> float:
-        """Mass or moment of inertia with another number, of the same type as `value`."""
-        return type(value)(number)
-
-
-def _unit_of(value: float) -> str:
-    return "kg m^2" if isinstance(value, Inertia) else "kg"
+    def put(self, value: Inertia, keys: Sequence[str], number: float) -> Inertia:
+        """The inertia with another number, or the free one with another bound."""
+        if isinstance(value.value, Free) and keys:
+            return value._replace(value=other_bound(value.value, keys[0], number))
+        return value._replace(value=number)
 
 
 @dataclass(frozen=True)
@@ -241,11 +275,6 @@ def _parts_of(kind: Any) -> TableCodec:
 class MechanismTable:
     """A vehicle of masses, levers, networks and roads."""
 
-    coordinates: Mapping[str, float] = key(
-        NamesCodec(InertiaCodec(), part_name, least=1),
-        "Degrees of freedom: the mass or moment of inertia of each; 0 for a node that joins networks.",
-        'a section [vehicle.coordinates] with lines such as body = "250 kg"',
-    )
     struts: Mapping[str, Any] = key(
         NamesCodec(_parts_of(StrutTable), part_name),
         "Networks between two ports.",
@@ -278,6 +307,14 @@ class MechanismTable:
     )
 
 
+def _coordinates(free: bool) -> Declaration:
+    """The table of coordinates, whose inertias may be `free`."""
+    sentence = "Degrees of freedom: the mass or moment of inertia of each; 0 for a node that joins networks."
+    example = 'a section [vehicle.coordinates] with lines such as body = "250 kg"'
+    table = NamesCodec(InertiaCodec(free), part_name, least=1)
+    return Declaration(table, sentence, example, REQUIRED, "coordinates", "coordinates")
+
+
 def _seat(free: bool) -> Declaration:
     """The table of a seat, whose mass may be `free`."""
     mass = replace(next(declaration_of(one, free=free) for one in fields_of(Seat)), words=SEAT_MASS)
@@ -302,7 +339,7 @@ def _vehicle_table(model: str, free: bool) -> TableCodec:
 
     tag = ("model", model, "The kind of vehicle.")
     if model == MECHANISM:
-        keys = (*keys_in(MechanismTable), _seat(free))
+        keys = (_coordinates(free), *keys_in(MechanismTable), _seat(free))
         return table_of(MechanismTable, keys=keys, make=make, tag=tag, about=str(MechanismTable.__doc__))
     keys = tuple(declaration_of(field, free=free) for field in fields_of(VEHICLES[model]))
     seat = (_seat(free),) if VEHICLES[model].moved == "road" else ()
@@ -339,7 +376,9 @@ def forces_of(vehicle: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _is_angle(entry: Any) -> bool:
+    if isinstance(entry, Inertia):
+        return entry.angle
     try:
-        return isinstance(entry if isinstance(entry, float) else inertia(entry), Inertia)
-    except ValueError:  # told with the coordinate
+        return inertia(entry[LOWER] if isinstance(entry, dict) else entry).unit != "kg"
+    except (ValueError, KeyError):  # told with the coordinate
         return False

@@ -14,7 +14,7 @@ from inerter.errors import InerterError, MechanismError
 from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.vehicle_tables import MECHANISM, SEAT, SEAT_MASS, Inertia, Length, forces_of
+from inerter.files.common.vehicle_tables import MECHANISM, SEAT, SEAT_MASS, Length, forces_of
 from inerter.formatting import format_number, format_quantity, format_range
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
@@ -84,10 +84,15 @@ def _words_of(kind: Any, values: Values) -> Iterator[tuple[str, float | None, st
     """Name, value and unit of each quantity that a dataclass declares and that is not zero."""
     for field in fields_of(kind):
         value = values[field.key]
-        if isinstance(value, Free):
-            yield field.in_words, None, f"free, {format_range(value.lower, value.upper, field.unit, 12)}"
-        elif value != 0.0:
-            yield field.in_words, value, field.unit
+        if value != 0.0:
+            yield _in_words(field.in_words, value, field.unit)
+
+
+def _in_words(name: str, value: float | Free, unit: str) -> tuple[str, float | None, str]:
+    """Name, value and unit; or name, None and the text of a range."""
+    if isinstance(value, Free):
+        return name, None, f"free, {format_range(value.lower, value.upper, unit, 12)}"
+    return name, value, unit
 
 
 def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
@@ -179,9 +184,7 @@ class _OwnMechanism:
         loads = {f"{name}_load": 1.0 for name in values["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
         ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in values["struts"].items()}
         return Mechanism(
-            tuple(
-                Coordinate(n, float(value), isinstance(value, Inertia)) for n, value in values["coordinates"].items()
-            ),
+            tuple(Coordinate(name, one.value, one.angle) for name, one in values["coordinates"].items()),
             tuple(Strut(name, networks[name], upper, lower) for name, (upper, lower) in ends.items()),
             tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
             tuple(RoadInput(name, road["distance"], road["track"]) for name, road in values["roads"].items()),
@@ -195,8 +198,8 @@ class _OwnMechanism:
         )
 
     def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
-        for name, value in values["coordinates"].items():
-            yield name.replace("_", " "), value, "kg m^2" if isinstance(value, Inertia) else "kg"
+        for name, (unit, value) in values["coordinates"].items():
+            yield _in_words(name.replace("_", " "), value, unit)
         for name, strut in values["struts"].items():
             yield f"strut {name}", None, f"{_place(strut['upper'])} over {_place(strut['lower'])}"
         for name, tyre in values["tyres"].items():
@@ -208,7 +211,7 @@ class _OwnMechanism:
             yield f"force {name}", None, f"on {_place(port)}"
 
     def problems(self, values: Values) -> Iterator[Problem]:
-        known = {name: isinstance(value, Inertia) for name, value in values["coordinates"].items()}
+        known = {name: inertia.angle for name, inertia in values["coordinates"].items()}
         roads = tuple(values["roads"])
         found: list[Problem] = []
         for name, strut in values["struts"].items():

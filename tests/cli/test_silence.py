@@ -20,6 +20,7 @@ from inerter.cli import pace as paces
 from inerter.cli import pulse as pulses
 from inerter.cli.pace import Pace
 from inerter.cli.progress import fraction, progress, steps
+from inerter.files.study.cases import Outcome
 from inerter.work.progress import ProgressStep, report, within
 
 SILENCE = 2.0  # seconds
@@ -114,6 +115,19 @@ def test_each_way_to_show_progress_has_a_line_in_time(
     assert len([line for line in lines if " s" in line]) >= (2 if work is in_progress else 1), lines
     if work is not in_fraction:
         assert any("starts 3 of 64, lowest 1.25" in line for line in lines), lines
+
+
+@pytest.mark.usefixtures("faster")
+def test_what_comes_after_the_designs_is_told_in_place_of_their_count(capsys: pytest.CaptureFixture[str]) -> None:
+    with progress() as shown:
+        shown.cases(0, 1, None, 0)
+        shown.cases(1, 1, Outcome("S1", "J1", 0, {}, {}, {}, 0, 0, 0, {}, {}, {"norm": "ok"}), 0)
+        report("drawing the figures")
+        time.sleep(0.7)
+    lines = capsys.readouterr().err.splitlines()
+    after = lines[lines.index("all 1 designs found") + 1 :]
+    assert after, lines
+    assert all(line.startswith("drawing the figures, ") for line in after), lines
 
 
 def fail_within(name: str) -> None:

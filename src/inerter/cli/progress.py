@@ -70,7 +70,7 @@ class _Study:
 
     def words(self, step: ProgressStep) -> str:
         """State of progress, in one line."""
-        if self.begun is None:
+        if self.begun is None or self.done == self.total:  # what comes then is not counted, such as the figures
             return self.compiling or str(step)
         part = self.part()
         rate = f", {format_number(self.rate(), 3)} a second" if self.done > self.kept + 9 else ""
@@ -131,8 +131,8 @@ def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
         def update(step: ProgressStep) -> None:
             study.pace.take(step)
             words = study.words(step)
-            if study.begun is None:
-                bar.update(task, description=words)
+            if study.begun is None or study.done == study.total:
+                bar.update(task, completed=study.done, description=words)
                 return
             parts = sum(one.share or 0.0 for one, _ in study.pace.parts.values())
             text = f"{study.part() or study.items}{_failures_clause(study.n_failures)}{study.pace.words()}"

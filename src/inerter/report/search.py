@@ -35,6 +35,7 @@ from inerter.report.json_data import json_data
 from inerter.report.page import PageFigure, page_figures, study_page
 from inerter.report.sections import Section
 from inerter.table import records
+from inerter.work.progress import report
 
 _NEAR = 0.01  # share within which a smaller network is as good as the best
 _MOST_FAILED = 5  # networks that are named for one reason
@@ -169,6 +170,7 @@ def search_data(found: StudySearch) -> dict[str, Any]:
 
 def write_search_report(found: StudySearch, folder: Path) -> None:
     """Draw the networks and fronts of a search, and write the page with these drawings."""
+    report("drawing the figures")
     draw_search(found, folder / FIGURES)
     study = found.study
     page = study_page(

@@ -161,7 +161,12 @@ def test_what_is_not_a_stiffness_is_refused_in_one_sentence(text, words):
 
 @pytest.mark.parametrize(
     ("text", "unit", "meant"),
-    [("5 kNs/m", "N s/m", "5 kN s/m"), ("1400 kgm^2", "kg m^2", "1400 kg m^2"), ("7 Ns/mm", "N s/m", "7 N s/mm")],
+    [
+        ("5 kNs/m", "N s/m", "5 kN s/m"),
+        ("1400 kgm^2", "kg m^2", "1400 kg m^2"),
+        ("7 Ns/mm", "N s/m", "7 N s/mm"),
+        ("5 kNm", "N m", "5 kN m"),
+    ],
 )
 def test_a_product_in_one_is_proposed_apart_and_with_its_prefix(text: str, unit: str, meant: str) -> None:
     with pytest.raises(UnitError, match=re.escape(f'such as "{meant}"')):

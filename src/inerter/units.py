@@ -33,6 +33,7 @@ PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
 _FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa (m^3/cycle)", "256e-6 m^3"
+_OF_YARN = re.compile(r"\b[kM]?Nm\b")  # kilometres a kilogram to pint; whoever writes it here means N m
 _LONGEST = 100
 _IMPORTS, _PAUSE = 5, 0.2  # of pint: attempts, and seconds between them
 
@@ -98,7 +99,7 @@ def is_unit(unit: str) -> bool:
     """Whether `unit` is a known unit."""
     if unit in FREQUENT:
         return True
-    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit):
+    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit) or _OF_YARN.search(unit):
         return False
     registry = _registry()  # whose failure says nothing of the unit
     try:

@@ -46,6 +46,13 @@ def test_an_example_is_a_line_of_the_file(capsys):
         assert tomllib.loads(line.removeprefix("  example  ").partition("    in [")[0])
 
 
+def test_a_key_that_others_may_replace_is_told_with_them(capsys):
+    """As `inerter check` says of a file that has none of them."""
+    text = told(capsys, "road.roughness")
+    assert 'default  none: required, or class = "C", or profile = "road.csv"' in text
+    assert "none: required\n" in told(capsys, "road.speed")
+
+
 def test_all_keys_in_a_table(capsys):
     out = told(capsys)
     assert [line.split()[0] for line in out.split("\n")[1:] if line[:1].strip()] == PLACES

@@ -77,7 +77,8 @@ def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:
     if key.default not in (None, []):
         yield from _wrap_text(f"default  {as_line(key.name, key.default)}")
     elif ANY_NAME not in key.place:
-        yield from _wrap_text("default  none: required" if key.needed else "default  not set")
+        instead = f", or {key.instead}" if key.instead else ""
+        yield from _wrap_text(f"default  none: required{instead}" if key.needed else "default  not set")
     if key.example is not None:
         name = "k" if key.name == ANY_NAME else key.name
         section = key.place.rpartition(".")[0]

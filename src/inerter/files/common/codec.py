@@ -16,7 +16,7 @@ from inerter.errors import InerterError
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem
-from inerter.files.common.schema import example_value
+from inerter.files.common.schema import INSTEAD, example_value
 from inerter.files.common.suggest import nearest
 from inerter.units import quote_value
 
@@ -161,6 +161,8 @@ class Declaration:
         default = None if self.default in (REQUIRED, None) else self.codec.dump(self.default)
         if isinstance(default, str | int | float) or (isinstance(default, list) and default):
             found["default"] = default
+        if self.implied and self.default is REQUIRED:
+            found[INSTEAD] = self.implied
         return found
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from inerter.files.common.schema import UNIT, USUAL
+from inerter.files.common.schema import INSTEAD, UNIT, USUAL
 
 ANY_NAME = "NAME"  # stands in a place for a name of the author's own
 _DECIDES = ("model", "kind")  # keys whose value decides which others there are
@@ -23,6 +23,7 @@ class Key:
     example: Any = None
     default: Any = None
     needed: bool = False
+    instead: str = ""  # lines of other keys, one of which is needed in its place
     section: bool = False  # whether it holds other keys
     of: str = ""  # the model or kind that has it, where not all have
 
@@ -96,7 +97,8 @@ def _key(schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterat
         words=tuple(words),
         example=next(iter(said.get("examples", ())), None),
         default=said.get("default"),
-        needed=needed,
+        needed=needed or INSTEAD in said,
+        instead=said.get(INSTEAD, ""),
         section=bool(held),
         of=of,
     )

@@ -8,6 +8,7 @@ from typing import Any
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 UNIT = "x-unit"  # a keyword of our own, which validators pass over: the SI unit of a quantity
+INSTEAD = "x-instead"  # another: lines of other keys, one of which a file must have if it lacks the key
 USUAL = {  # units of each kind as they are often written; others are not refused
     "N/m": ("N/m", "kN/m", "MN/m", "N/mm", "kN/mm", "lbf/in"),
     "N s/m": ("N s/m", "kN s/m", "MN s/m", "N s/mm", "kN s/mm"),

@@ -16,7 +16,9 @@ from study_text import assert_refused, load_text, study_text
 import inerter as it
 from inerter.cli.main import call
 from inerter.errors import StudyError
+from inerter.files.study import searching
 from inerter.files.study.checking import check_lines, search_plans
+from inerter.files.study.running import part_results
 from inerter.files.study.search_parts import GroupResult, NetworkGroup, RealPart, RealResult
 from inerter.files.study.searching import StudySearch, search_study
 from inerter.files.study.study import Study
@@ -265,6 +267,27 @@ def test_real_inerters_are_in_report_and_journal(real: StudySearch) -> None:
     assert (real.folder / "search_real_inerters.csv").read_bytes() == before
 
 
+def test_results_are_in_the_order_of_the_study_whatever_is_ready_first(
+    real: StudySearch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(
+        searching, "part_results", lambda *asked: reversed([[one] for p in part_results(*asked) for one in p])
+    )
+    late = search_study(real.study, tmp_path / "out")
+    assert [one.part for one in late.searches[0].real] == [one.part for one in real.searches[0].real]
+    assert [one.part for one in late.fixed] == [one.part for one in real.fixed]
+    for name in ("search.csv", "search_real_inerters.csv"):
+        assert (late.folder / name).read_bytes() == (real.folder / name).read_bytes()
+
+
+def test_where_no_inerter_is_among_the_best_networks_none_is_made_real(tmp_path: Path) -> None:
+    asked = f'indices = ["J1"]\noptimise = "norm"\n{REAL}'
+    study = load_text(tmp_path, text(asked, elements=ELEMENTS.replace("network = 2", "network = 1")))
+    found = search_study(study, tmp_path / "out")
+    assert all("real inerters" not in table.caption for table in next(iter(search_sections(found))).tables)
+    assert "Ride comfort (J1) with real inerters: none of the best networks has an inerter." in search_sentences(found)
+
+
 def test_a_network_that_fails_with_real_inerters_says_why(real: StudySearch) -> None:
     part = RealPart("S", "J1", "norm", "c1 - b1", real.searches[0].result.ranking[0])
     result = RealResult(**json.loads(json.dumps(part.failed_result(real.study, "out of memory").to_json())))
@@ -303,7 +326,7 @@ def test_the_command_writes_tables_drawings_and_a_page(tmp_path: Path, capsys: p
     assert call(command) == 0
     told = capsys.readouterr().out
     assert max(map(len, told.splitlines())) <= 80
-    for words in ("best network for each number of elements", "c1 - b1", "have no value", "Gain on S1"):
+    for words in ("best network for each number of elements", "c1 - b1", "1 more network has no value", "Gain on S1"):
         assert words in told
     names = {path.relative_to(tmp_path / "out").as_posix() for path in (tmp_path / "out").rglob("*.*")}
     assert names >= {"search.csv", "report.html", "figures/frontier.svg", "figures/networks-S-J1.svg"}

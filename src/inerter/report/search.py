@@ -48,7 +48,7 @@ def search_sections(found: StudySearch) -> Iterator[Section]:
         if one.result.ranking:
             tables = [make(found.study, one) for make in (frontier_table, inerters_table, ranking_table)]
             brief = [tables[0], tables[-1]]
-            if one.real:
+            if any(each.network for each in one.real):
                 tables.append(real_networks_table(found.study, one))
                 brief.append(tables[-1])
             remarks = [agreement_remark(one), *(f"{note}." for note in at_bound_notes(one))]
@@ -98,6 +98,8 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
 def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
     """The best network with real inerters by each method, and those without a reliable value."""
     asked = found.study.real_inerters
+    if asked is not None and not any(each.network for each in one.real):
+        yield f"{capital(one.heading)} with real inerters: none of the best networks has an inerter."
     for method in asked.methods if asked is not None else ():
         own = [each for each in one.real if each.method == method and each.network]
         known = [each for each in own if isfinite(each.value)]
@@ -117,9 +119,14 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
 def _front_remark(front: LayoutFront) -> str:
     """Sentence on the networks that were and were not searched between their single optima."""
     result = front.result
+    were, whose = ("network was", "its") if result.n_searched == 1 else ("networks were", "their")
+    searched = f"{result.n_searched} {were} searched between {whose} single optima"
+    if not result.n_bounded:
+        return f"{searched}."
+    were, whose = ("was", "its") if result.n_bounded == 1 else ("were", "their")
     return (
-        f"{result.n_searched} networks were searched between their single optima; {result.n_bounded} were not, since "
-        f"even their best values in each index, taken together, are no better than the front."
+        f"{searched}; {result.n_bounded} {were} not, since even {whose} best values in each index, taken together, are "
+        "no better than the front."
     )
 
 
@@ -142,7 +149,8 @@ def search_notes(found: StudySearch) -> list[str]:
             notes.append(f"{one.heading}: {have} no value ({named}{more}): {reason.rstrip('.')}")
         rest = sum(len(networks) for _, networks in told[_MOST_REASONS:])
         if rest:
-            notes.append(f"{one.heading}: {rest} more networks have no value; search.csv has the reason of each")
+            have = "1 more network has" if rest == 1 else f"{rest} more networks have"
+            notes.append(f"{one.heading}: {have} no value; search.csv has the reason of each")
     return notes
 
 

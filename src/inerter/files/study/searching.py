@@ -149,13 +149,12 @@ def tables_of(found: StudySearch) -> dict[str, Table]:
 def _search(study: Study, plans: Mapping[tuple[str, str], SearchPlan], work: _Work, folder: Path) -> StudySearch:
     """Networks for each index, then their front, then the best of them with real inerters."""
     work.prepare(_kernels(study, plans), *_parts(study, plans))
-    work.compute(_parts(study, plans))
-    outcomes = tuple(one for one in work.done.values() if isinstance(one, Outcome))
+    outcomes = tuple(one for one in work.compute(_parts(study, plans)) if isinstance(one, Outcome))
     searches = list(_searches(study, plans, work.done))
     fronts = tuple(_fronts(study, plans, searches, work)) if study.trade_off else ()
-    work.compute([part for one in searches for part in _real_parts(study, one)])
+    parts = [part for one in searches for part in _real_parts(study, one)]
+    real = [one for one in work.compute(parts) if isinstance(one, RealResult)]
     work.end()
-    real = [one for one in work.done.values() if isinstance(one, RealResult)]
     searches = [
         replace(one, real=tuple(each for each in real if (each.layout, each.index) == (one.layout, one.index)))
         for one in searches

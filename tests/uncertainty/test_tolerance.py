@@ -121,6 +121,17 @@ def test_a_design_whose_index_is_not_known_somewhere():
     assert np.isfinite(lost.worst) == lost.status.ok
 
 
+def test_a_distribution_of_which_an_extreme_is_not_known_is_not_known():
+    """Linearisation is ok for all designs of the sample itself, and inaccurate at some corners of the tolerances."""
+    strut = it.Spring(120e3) | it.Damper(7353, name="c") - (it.Inerter(328.72) | it.Friction(200.0, name="f"))
+    found = it.tolerance_analysis(
+        paper_quarter_car(strut), J1, it.StatisticalLinearisation(), spread={"f": 0.1, "c": 0.1}, samples=16
+    )
+    assert found.status.kind is it.StatusKind.FAILED
+    numbers = (found.mean, found.standard_deviation, found.worst, found.quantile(0.95))
+    assert np.isnan([*numbers, *found.total_order.values()]).all()
+
+
 @pytest.mark.parametrize("index", [J1, J3])
 def test_gradients_of_a_quantile(index):
     of = it.Quantile(index, scatter_of({"c": 0.3, "b": 0.2, "k": 0.1}, "uniform"), samples=64)

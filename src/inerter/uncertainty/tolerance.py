@@ -192,8 +192,9 @@ def _analyse(
         worst_of((status, scatter_left_out(design, method, scatter, idle))),
         neglected_scatter(design, method, scatter, idle),
     )
-    if len(unseen) == count:  # nothing is known of a scatter that the method neglects
-        known, both = False, np.full(both.shape, np.nan)
+    known = known and len(unseen) < count  # nothing is known of a scatter that the method neglects
+    if not known:
+        both = np.full(both.shape, np.nan)
     first, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
     effects = [(np.nan,) * 2 if n in unseen else (f, t) for n, f, t in zip(names, first, total, strict=True)]
     top = int(np.argmax(extreme)) if known else 0

@@ -165,6 +165,11 @@ def test_a_peak_gain_and_a_norm():
     assert all(one.status.ok for one in result.front)
 
 
+def test_the_number_of_points_may_be_of_any_integer_type():
+    result = it.search(car(1), (COMFORT, LOAD), NORM, points=np.int64(3))
+    assert facts(result) == facts(it.search(car(1), (COMFORT, LOAD), NORM, points=3))
+
+
 def test_indices_without_conflict_have_a_front_of_one_point():
     rougher = it.RideComfort(it.Road(roughness=5e-6, speed=25))
     result = it.search(car(2, springs=None), (COMFORT, rougher), NORM)

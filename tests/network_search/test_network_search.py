@@ -15,6 +15,7 @@ from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, Spring
+from inerter.errors import DesignError
 from inerter.network_search import plan as module
 from inerter.network_search.results import TIED, reduced_topology
 from inerter.networks.enumeration import Topology, enumerate_networks
@@ -272,6 +273,29 @@ def test_free_inerters_beside_the_network_stay_ideal():
     fixed = Spring(120e3) | it.Inerter(one.parameters["b"]) | Damper(3e3) | device
     expected = it.evaluate(paper_quarter_car(fixed), INDICES["comfort"], it.StatisticalLinearisation())
     assert real.with_friction[10.0].value == pytest.approx(expected.value, rel=1e-12)
+
+
+@pytest.mark.parametrize("friction", [-10.0, float("nan"), "10", None])
+def test_a_friction_that_no_inerter_has_is_refused(friction):
+    best, method = found("comfort", 2).ranking[0], it.StatisticalLinearisation()
+    assert best.topology.counts["b"]
+    with pytest.raises(DesignError, match="friction of a real inerter must be a non-negative number of N"):
+        it.optimise_with_real_inerters(best, method, friction=friction, starts=1)
+    with pytest.raises(DesignError, match="friction of a real inerter must be a non-negative number of N"):
+        it.with_friction_and_elasticity([best], method, frictions=[friction])
+
+
+def test_what_is_no_network_of_a_search_is_refused():
+    result, method = found("comfort", 2), it.StatisticalLinearisation()
+    with pytest.raises(DesignError, match=r"search\(\.\.\.\)\.ranking"):
+        it.optimise_with_real_inerters(result, method)
+    with pytest.raises(DesignError, match=r"search\(\.\.\.\)\.ranking"):
+        it.with_friction_and_elasticity(result, method)
+    with pytest.raises(DesignError, match="`frictions` must be a list of forces"):
+        it.with_friction_and_elasticity(result.ranking[:1], method, frictions=10.0)
+    for share in (-0.01, float("nan"), "1 %"):
+        with pytest.raises(DesignError, match="share must be a non-negative number"):
+            result.near_optimal(share)
 
 
 def test_an_index_that_depends_on_what_carries_weight():

@@ -31,6 +31,7 @@ from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import quasi_random_points
 from inerter.pareto_fronts.pareto import points_at_aims
 from inerter.pareto_fronts.points import FrontPoint, non_dominated
+from inerter.validation import is_whole
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -133,10 +134,10 @@ def plan_front(
     if len(set(map(repr, several))) < len(several):
         raise PerformanceIndexError("A front over networks requires different indices; one is repeated.")
     least = 3 if len(several) == 2 else 6
-    if isinstance(points, bool) or not isinstance(points, int) or points < least:
+    if not is_whole(points, least):
         raise DesignError(f"A front of {len(several)} indices requires at least {least} points, got points={points!r}.")
     plans = tuple(plan_search(vehicle, one, method, subject_to, seed, starts) for one in several)
-    return FrontPlan(plans, points)
+    return FrontPlan(plans, int(points))
 
 
 def front_group(plan: FrontPlan, scale: FrontScale, group: Iterable[FrontTask]) -> list[NetworkPoints]:

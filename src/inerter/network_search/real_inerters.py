@@ -6,12 +6,14 @@ from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from inerter.errors import DesignError
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.elements import Damper, Element, Friction, Inerter, Network, Spring
 from inerter.networks.transform import map_elements
 from inerter.optimisation.optimise import Optimum, optimise
+from inerter.validation import is_number
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
 
@@ -33,7 +35,12 @@ class RealInerter:
     damping: float = 3200.0
 
     def network(self, inerter: Inerter, friction: float) -> Network:
-        """The network of a real inerter of the same inertance; without friction [N] if that is zero."""
+        """The network of a real inerter of the same inertance; without friction [N] if that is zero.
+
+        Raises `DesignError` for a friction that is no number, or negative.
+        """
+        if not is_number(friction) or friction < 0.0:
+            raise DesignError(f"The friction of a real inerter must be a non-negative number of N, got {friction!r}.")
         name = inerter.label
         moved = inerter | Friction(friction, f"{name}_f") if friction > 0.0 else inerter
         return (Spring(self.stiffness, f"{name}_k") | Damper(self.damping, f"{name}_c")) - moved
@@ -59,6 +66,12 @@ class RealNetwork:
     def ideal(self) -> float:
         """Value with ideal inerters."""
         return self.found.value
+
+
+def check_found(found: object) -> None:
+    """Raise `DesignError` unless this is a network of a search."""
+    if not isinstance(found, FoundNetwork):
+        raise DesignError(f"Expected a network of a search, such as search(...).ranking[0], got {found!r}.")
 
 
 def with_real_inerters(found: FoundNetwork, real: RealInerter, friction: float = 0.0) -> Vehicle:
@@ -99,6 +112,7 @@ def optimise_with_real_inerters(
     >>> sorted(real.parameters), real.unit
     (['b1'], 'm/s^2')
     """
+    check_found(found)
     plan = found.plan
     design = _with_real_inerters(plan.design(found.topology), found, real or RealInerter(), friction)
     return optimise(
@@ -127,7 +141,11 @@ def with_friction_and_elasticity(
     >>> [sorted(each.with_friction) for each in real]  # N
     [[10.0, 100.0]]
     """
-    shaft = real or RealInerter()
+    shaft, several = real or RealInerter(), [networks] if not isinstance(networks, Iterable) else list(networks)
+    for one in several:
+        check_found(one)
+    if isinstance(frictions, str) or not isinstance(frictions, Iterable):
+        raise DesignError(f"`frictions` must be a list of forces in N, such as [10.0, 100.0], got {frictions!r}.")
     return [
         RealNetwork(
             found,
@@ -137,5 +155,5 @@ def with_friction_and_elasticity(
                 for friction in frictions
             },
         )
-        for found in networks
+        for found in several
     ]

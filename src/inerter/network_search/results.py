@@ -9,7 +9,7 @@ from itertools import chain
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from inerter.errors import OK, NetworkError, Status, StatusKind
+from inerter.errors import OK, DesignError, NetworkError, Status, StatusKind
 from inerter.formatting import format_alike
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate
@@ -17,6 +17,7 @@ from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.networks.enumeration import BRIDGE, PARALLEL, SERIES, Topology, Tree
 from inerter.networks.equivalence import equivalence_classes, transform_values
 from inerter.notebook import shown_by
+from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -114,7 +115,12 @@ class SearchResult:
         return tuple(self.ranking[i] for i in _frontier(self.ranking, _count_inerters))
 
     def near_optimal(self, within: float = 0.01) -> tuple[FoundNetwork, ...]:
-        """Networks whose value is within a share of the best one, those of the fewest elements first."""
+        """Networks whose value is within a share of the best one, those of the fewest elements first.
+
+        Raises `DesignError` for a share that is no number, or negative.
+        """
+        if not is_number(within) or within < 0.0:
+            raise DesignError(f"The share must be a non-negative number such as 0.01 for 1 %, got {within!r}.")
         if not self.ranking:
             return ()
         limit = self.ranking[0].value * (1.0 + within)

@@ -27,7 +27,7 @@ from inerter.errors import SynthesisError
 from inerter.formatting import format_quantity
 from inerter.networks.elements import Network
 from inerter.synthesis.realise import realise
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, is_number, is_whole
 from inerter.work.progress import report
 
 Floats = NDArray[Any]  # of float64, or of fractions in exact arithmetic
@@ -79,13 +79,14 @@ def best_admittance(
 
     Raises `SynthesisError` for invalid arguments, or if the index exists at no start.
     """
-    if not isinstance(degree, int) or isinstance(degree, bool) or degree < 0:
+    if not is_whole(degree):
         raise SynthesisError(f"The degree of an admittance must be a non-negative integer, got {degree!r}.")
-    if not isinstance(starts, int) or isinstance(starts, bool) or starts < 1:
+    if not is_whole(starts, 1):
         raise SynthesisError(f"The number of starts must be a positive integer, got {starts!r}.")
     check_positive(SynthesisError, "The typical damping", damping, "N s/m")
     check_positive(SynthesisError, "The typical frequency", omega, "rad/s")
 
+    degree, starts = int(degree), int(starts)
     objective = _Objective(index, gradient, damping, omega)
     rng = np.random.default_rng(seed)
     found: list[_Minimum] = []

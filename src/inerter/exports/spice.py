@@ -6,7 +6,8 @@ Each strut is a subcircuit between the nodes `upper` and `lower`, whose admittan
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count
 
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
@@ -45,20 +46,24 @@ def _subcircuit_names(names: Sequence[str]) -> list[str]:
     """Names of subcircuits: those that differ by capitals alone are numbered all, so that none stands for another."""
     small = [name.lower() for name in names]
     numbered = [f"{name}_{small[: i + 1].count(name.lower())}" for i, name in enumerate(names)]
-    return _unique(new if small.count(name.lower()) > 1 else name for name, new in zip(names, numbered, strict=True))
+    different = _Names()
+    told = (new if small.count(name.lower()) > 1 else name for name, new in zip(names, numbered, strict=True))
+    return [different.add(name) for name in told]
 
 
-def _unique(names: Iterable[str]) -> list[str]:
+class _Names:
     """Names in the syntax of SPICE, which does not tell capital letters from others, each different."""
-    found: dict[str, str] = {}
-    for name in names:
+
+    def __init__(self) -> None:
+        self._taken: set[str] = set()
+
+    def add(self, name: str) -> str:
+        """The name, with a number if it is taken."""
         stem = _WORD.sub("_", name)
-        made, number = stem, 1
-        while made.lower() in found:
-            number += 1
-            made = f"{stem}_{number}"
-        found[made.lower()] = made
-    return list(found.values())
+        numbered = (stem if number == 1 else f"{stem}_{number}" for number in count(1))
+        made = next(one for one in numbered if one.lower() not in self._taken)
+        self._taken.add(made.lower())
+        return made
 
 
 class _Netlist:
@@ -66,7 +71,7 @@ class _Netlist:
 
     def __init__(self) -> None:
         self._nodes = 0
-        self._names: list[str] = []
+        self._names = _Names()
 
     def lines(self, network: Network, upper: str, lower: str) -> Iterator[str]:
         match network:
@@ -95,9 +100,8 @@ class _Netlist:
 
     def _part(self, element: Element, upper: str, lower: str) -> str:
         letter, number = _LETTERS[element.linear], element.coefficient
-        self._names = _unique([*self._names, f"{letter}{element.label}"])
         value = number if letter == "C" else 1.0 / number
-        return f"{self._names[-1]} {upper} {lower} {exact(value)}"
+        return f"{self._names.add(f'{letter}{element.label}')} {upper} {lower} {exact(value)}"
 
 
 def admittance_netlist(text: str, name: str, frequencies: Mapping[str, float]) -> str:

@@ -30,11 +30,10 @@ _FAR = 3.0
 
 def figure_names(found: StudySearch) -> tuple[dict[str, LayoutSearch], dict[str, LayoutFront]]:
     """File names, without suffix, of the schematics of the best networks, and of the fronts, with what each shows."""
-    names = [FRONTIER, *(f"networks-{one.layout}-{one.index}" for one in found.searches)]
-    _, *stems = file_stems([*names, *(f"front-{one.layout}" for one in found.fronts)]).values()
-    return dict(zip(stems, found.searches, strict=False)), dict(
-        zip(stems[len(found.searches) :], found.fronts, strict=True)
-    )
+    networks = {f"networks-{one.layout}-{one.index}": one for one in found.searches}
+    fronts = {f"front-{one.layout}": one for one in found.fronts}
+    stems = file_stems([FRONTIER, *networks, *fronts])
+    return {stems[name]: one for name, one in networks.items()}, {stems[name]: one for name, one in fronts.items()}
 
 
 def draw_search(found: StudySearch, folder: Path) -> list[Path]:

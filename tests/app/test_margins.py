@@ -15,7 +15,7 @@ from study_text import load_text
 import inerter as it
 from inerter.app.documents import study_from
 from inerter.cli.commands import run as run_command
-from inerter.cli.options import OWN
+from inerter.cli.options import WorkOptions
 from inerter.files.common.toml import as_toml
 from inerter.methods.registry import is_blind, refuses_gaps
 from inerter.tasks.margins import compliant_springs, usual_tolerances
@@ -198,5 +198,5 @@ def _report_of(text: str, folder: Path) -> bytes:
     folder.mkdir()
     load_text(folder, text)
     (path,) = folder.glob("*.toml")
-    run_command(path, folder / "results", 1, OWN, resume=False, force=False, as_json=True)
+    run_command(path, WorkOptions(folder / "results", jobs=1, json=True))
     return (folder / "results" / "report.html").read_bytes()

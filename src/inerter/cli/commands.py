@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import json
-import os
-import shlex
-from collections.abc import Iterable
 from itertools import islice
 from pathlib import Path
 from textwrap import wrap
 
 from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
-from inerter.cli.options import OWN, Cluster
+from inerter.cli.options import WorkOptions
 from inerter.cli.pace import Pace
 from inerter.cli.progress import progress, steps
 from inerter.cli.streams import say
-from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
@@ -37,26 +33,17 @@ from inerter.statements import Statement
 _MOST = 20  # designs that are told one by one
 
 
-def run(
-    study: Path,
-    output: Path | None,
-    jobs: int | None,
-    cluster: Cluster = OWN,
-    *,
-    resume: bool,
-    force: bool,
-    as_json: bool,
-) -> tuple[Statement, ...]:
+def run(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     """Run a study file into a folder; returns its status."""
     loaded = load_study(study)
-    folder = output or Path(f"{study.stem}-results")
-    own = processes(jobs)
+    folder = options.output or Path(f"{study.stem}-results")
+    own = options.processes
 
-    kept = continuation_clause(("run", str(study)), folder, jobs, cluster, as_json=as_json)
+    kept = options.continuation_clause(("run", str(study)), folder)
     items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
     with (
         interruptible(lambda: kept),
-        workers(cluster, jobs) as executor,
+        workers(options.cluster, options.jobs) as executor,
         progress(items, executor, _pace(loaded)) as shown,
     ):
         result = run_study(
@@ -64,14 +51,14 @@ def run(
             folder,
             jobs=own,
             executor=executor,
-            resume=resume,
-            force=force,
+            resume=options.resume,
+            force=options.force,
             progress=shown.cases,
             compiling=shown.kernels,
             finish=write_figures_and_report,
         )
     say(f"report: {folder / REPORT}")
-    if as_json:
+    if options.json:
         for text in as_text(result):
             print(text, end="")
     else:
@@ -109,46 +96,21 @@ def _describe_paper(paper: Paper) -> str:
     return "\n".join([paper.name, *(f"  {line}" for line in told)])
 
 
-def reproduce(
-    name: str,
-    only: tuple[str, ...],
-    output: Path | None,
-    jobs: int | None,
-    cluster: Cluster = OWN,
-    *,
-    resume: bool,
-    force: bool,
-    as_json: bool,
-) -> tuple[Statement, ...]:
+def reproduce(name: str, only: tuple[str, ...], options: WorkOptions) -> tuple[Statement, ...]:
     """Reproduce the paper of that name, or some parts of it; returns the statuses of its studies."""
     paper = PAPERS[name]
-    folder = output or Path(f"{name}-results")
-    own = processes(jobs)
+    folder = options.output or Path(f"{name}-results")
+    own = options.processes
     parts = (word for part in only for word in ("--only", part))
-    kept = continuation_clause(("reproduce", name, *parts), folder, jobs, cluster, as_json=as_json)
-    settings = {"jobs": own, "resume": resume, "force": force}
-    with interruptible(lambda: kept), workers(cluster, jobs) as executor, steps() as callback:
+    kept = options.continuation_clause(("reproduce", name, *parts), folder)
+    settings = {"jobs": own, "resume": options.resume, "force": options.force}
+    with interruptible(lambda: kept), workers(options.cluster, options.jobs) as executor, steps() as callback:
         found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
     say(f"report: {folder / REPORT}")
-    print(json.dumps(paper.as_data(found), indent=2) if as_json else paper.as_text(found))
+    print(json.dumps(paper.as_data(found), indent=2) if options.json else paper.as_text(found))
     for result in found.studies.values():
         _report_failures(result)
     return tuple(result.status for result in found.studies.values())
-
-
-def continuation_clause(
-    command: Iterable[str], folder: Path, jobs: int | None, cluster: Cluster, *, as_json: bool
-) -> str:
-    """Clause on results kept at an interruption, with the complete command that continues the work."""
-    options = (*(() if jobs is None else ("-j", str(jobs))), *cluster.words, *(("--json",) if as_json else ()))
-    again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])
-    return f"; what was computed is kept. Continue with: {again}"
-
-
-def processes(jobs: int | None) -> int:
-    if jobs is not None and jobs < 1:
-        raise StudyError(f"--jobs must be 1 or more processes, got {jobs}. Leave it out to use all cores.")
-    return jobs or os.cpu_count() or 1
 
 
 def _report_failures(result: StudyResult) -> None:

@@ -19,7 +19,18 @@ from inerter import __version__
 from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.atomic_io import remove_temporary_folders
 from inerter.cli.interrupts import came, heed, interruptible, tell
-from inerter.cli.options import OWN, BestFor, ClusterOptions, Force, ForceFile, Jobs, Json, Output, Resume, SweepPoint
+from inerter.cli.options import (
+    OWN,
+    UNCHANGED,
+    BestFor,
+    ClusterOptions,
+    Force,
+    ForceFile,
+    Json,
+    LongWork,
+    Output,
+    SweepPoint,
+)
 from inerter.cli.pulse import alive
 from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem, say
@@ -63,12 +74,7 @@ def run(
     study: Path,
     /,
     *,
-    output: Output = None,
-    jobs: Jobs = None,
-    cluster: ClusterOptions = OWN,
-    resume: Resume = False,
-    force: Force = False,
-    json: Json = False,
+    options: LongWork = UNCHANGED,
 ) -> tuple[Statement, ...]:
     """Optimise all layouts of a study file, and write tables, figures and a report.
 
@@ -82,7 +88,7 @@ def run(
     """
     from inerter.cli.commands import run as command
 
-    return command(study, output, jobs, cluster, resume=resume, force=force, as_json=json)
+    return command(study, options)
 
 
 @app.command(
@@ -95,12 +101,7 @@ def search(
     study: Path,
     /,
     *,
-    output: Output = None,
-    jobs: Jobs = None,
-    cluster: ClusterOptions = OWN,
-    resume: Resume = False,
-    force: Force = False,
-    json: Json = False,
+    options: LongWork = UNCHANGED,
 ) -> tuple[Statement, ...]:
     """Find the best network: optimise every network that the free networks of a study file may be, and rank them.
 
@@ -114,7 +115,7 @@ def search(
     """
     from inerter.cli.search import search as command
 
-    return command(study, output, jobs, cluster, resume=resume, force=force, as_json=json)
+    return command(study, options)
 
 
 @app.command(
@@ -527,7 +528,7 @@ def _command(arguments: list[str]) -> tuple[str, ...]:
 def _writes(arguments: list[str]) -> bool:
     """Whether a command writes results to files, and not only to the terminal."""
     command = app.parse_commands(arguments)[1][-1].default_command
-    return command is not None and "output" in signature(command).parameters
+    return command is not None and not {"output", "options"}.isdisjoint(signature(command).parameters)
 
 
 def _fail(error: InerterError) -> int:

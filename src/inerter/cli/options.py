@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import os
+import shlex
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
+
+from inerter.errors import StudyError
 
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Number of processes; default: all cores.")]
@@ -57,6 +62,36 @@ Force = Annotated[
 Json = Annotated[
     bool, Parameter(name="--json", negative="", show_default=False, help="Print the results as JSON instead of text.")
 ]
+
+
+@dataclass(frozen=True)
+class WorkOptions:
+    """Options of a command that computes into a folder: where, with what, and what becomes of results in the folder."""
+
+    output: Output = None
+    jobs: Jobs = None
+    cluster: ClusterOptions = OWN
+    resume: Resume = False
+    force: Force = False
+    json: Json = False
+
+    @property
+    def processes(self) -> int:
+        """Number of processes; raises `StudyError` below one."""
+        if self.jobs is not None and self.jobs < 1:
+            raise StudyError(f"--jobs must be 1 or more processes, got {self.jobs}. Leave it out to use all cores.")
+        return self.jobs or os.cpu_count() or 1
+
+    def continuation_clause(self, command: Iterable[str], folder: Path) -> str:
+        """Clause on results kept at an interruption, with the complete command that continues the work."""
+        jobs = () if self.jobs is None else ("-j", str(self.jobs))
+        options = (*jobs, *self.cluster.words, *(("--json",) if self.json else ()))
+        again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])
+        return f"; what was computed is kept. Continue with: {again}"
+
+
+UNCHANGED = WorkOptions()
+LongWork = Annotated[WorkOptions, Parameter(name="*")]
 ForceFile = Annotated[bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")]
 BestFor = Annotated[str | None, Parameter(help="Index for which designs are best, if values are free.")]
 SweepPoint = Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from inerter.cli.options import OWN, ClusterOptions, Force, Jobs, Json, Output, Resume
+from inerter.cli.options import UNCHANGED, LongWork
 from inerter.errors import StudyError
 from inerter.papers.registry import PAPERS
 from inerter.statements import Statement
@@ -36,12 +36,7 @@ def reproduce(
         tuple[Part, ...],
         Parameter(negative="", show_default=False, help="Part to reproduce; repeatable; default: all parts."),
     ] = (),
-    output: Output = None,
-    jobs: Jobs = None,
-    cluster: ClusterOptions = OWN,
-    resume: Resume = False,
-    force: Force = False,
-    json: Json = False,
+    options: LongWork = UNCHANGED,
 ) -> tuple[Statement, ...]:
     """Recompute a published paper and compare it with the printed numbers, designs, figures and claims.
 
@@ -54,8 +49,8 @@ def reproduce(
     from inerter.cli.commands import reproduce as command
 
     if paper is None:
-        if only or output or jobs or resume or force or json or cluster != OWN:
+        if only or options != UNCHANGED:
             raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
         papers()
         return ()
-    return command(paper, only, output, jobs, cluster, resume=resume, force=force, as_json=json)
+    return command(paper, only, options)

@@ -6,9 +6,8 @@ import json
 from pathlib import Path
 
 from inerter.cli.cluster import workers
-from inerter.cli.commands import continuation_clause, processes
 from inerter.cli.interrupts import interruptible
-from inerter.cli.options import OWN, Cluster
+from inerter.cli.options import WorkOptions
 from inerter.cli.progress import progress
 from inerter.cli.streams import say
 from inerter.files.common.folder import REPORT
@@ -19,25 +18,16 @@ from inerter.report.text import section_text, wrap_text
 from inerter.statements import Statement
 
 
-def search(
-    study: Path,
-    output: Path | None,
-    jobs: int | None,
-    cluster: Cluster = OWN,
-    *,
-    resume: bool,
-    force: bool,
-    as_json: bool,
-) -> tuple[Statement, ...]:
+def search(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     """Search the networks of a study file into a folder; returns its status."""
     loaded = load_study(study)
-    folder = output or Path(f"{study.stem}-search")
-    own = processes(jobs)
+    folder = options.output or Path(f"{study.stem}-search")
+    own = options.processes
 
-    kept = continuation_clause(("search", str(study)), folder, jobs, cluster, as_json=as_json)
+    kept = options.continuation_clause(("search", str(study)), folder)
     with (
         interruptible(lambda: kept),
-        workers(cluster, jobs) as executor,
+        workers(options.cluster, options.jobs) as executor,
         progress("networks", executor) as shown,
     ):
         found = search_study(
@@ -45,14 +35,14 @@ def search(
             folder,
             jobs=own,
             executor=executor,
-            resume=resume,
-            force=force,
+            resume=options.resume,
+            force=options.force,
             progress=shown.cases,
             compiling=shown.kernels,
             finish=write_search_report,
         )
     say(f"report: {folder / REPORT}")
-    print(json.dumps(search_data(found), indent=2) if as_json else _text(found))
+    print(json.dumps(search_data(found), indent=2) if options.json else _text(found))
     return (found.status,)
 
 

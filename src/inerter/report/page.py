@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, Unpack
 
 import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
@@ -26,7 +26,7 @@ from inerter.files.study.tasks import Answer
 from inerter.formatting import capital, join_units, typeset
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.problem_statement import computation, problem_statement
-from inerter.report.sections import design_sections, task_sections, trade_off_section
+from inerter.report.sections import Section, design_sections, task_sections, trade_off_section
 
 _SPACE = "\N{NO-BREAK SPACE}"
 _LARGER = 1.2  # than they are drawn, are drawings between text
@@ -86,11 +86,26 @@ def report(
     )
 
 
-def study_page(study: Study, answers: Iterable[str], words: Sequence[str], **results: Any) -> str:
+class PageContents(TypedDict):
+    """Contents of a page on a study, in the order of the page."""
+
+    title: str
+    swept: bool
+    searched: bool  # whether values were free
+    drawings: Mapping[str, Markup]  # of the networks, by layout
+    sections: Sequence[Section]
+    further_sections: Sequence[Section]
+    figures: Sequence[PageFigure]
+    notes: Sequence[str]
+    computation: Sequence[str]
+    study_file: str
+
+
+def study_page(study: Study, answers: Iterable[str], words: Sequence[str], **contents: Unpack[PageContents]) -> str:
     """Page of results on a study: `answers` in sentences, its problem with the titles of the indices, and the rest."""
     page = environment().get_template("report.html")
     headlines = [*answers, *roads_sentences(study)]
-    return with_contents(page.render(headlines=headlines, **problem_statement(study, words), **results))
+    return with_contents(page.render(headlines=headlines, **problem_statement(study, words), **contents))
 
 
 def page_figures(folder: Path, name: str, caption: str, *, natural: bool = False) -> Iterator[PageFigure]:

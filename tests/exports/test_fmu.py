@@ -173,7 +173,7 @@ def rough(number: int) -> it.Mechanism:
     )
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 9), kept=5))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2,), often=(9,), kept=5))
 def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = rough(number), 1e-3
     signal, height, slope = road(0.5, step, number)

@@ -88,6 +88,7 @@ def test_hops_never_lead_to_a_worse_fit() -> None:
     assert float(np.sum(problem.residual(basin_hopping(problem, start, seed=0)) ** 2)) < before
 
 
+@pytest.mark.campaign
 def test_a_bootstrap_agrees_with_curvature_where_nothing_strikes() -> None:
     """Without friction and backlash, and an encoder without errors, a bootstrap tells what the curvature tells."""
     model = it.Spring(it.free(1e4, 1e7, name="k")) | it.Damper(it.free(10, 1e5, name="c"))

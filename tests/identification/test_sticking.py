@@ -46,6 +46,7 @@ def widths(seed: int, start: float) -> tuple[np.ndarray, tuple[float, float], fl
     return shaft, (low, high), held
 
 
+@pytest.mark.campaign
 def test_like_records_have_like_widths_wherever_the_search_ended() -> None:
     """On the plateau, and on the edge where the device slips by a hair."""
     shaft = it.Rig(SHAFT)

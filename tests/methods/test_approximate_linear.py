@@ -68,6 +68,7 @@ def test_linear_designs_get_their_norm(name, index):
     assert simulated.value == pytest.approx(evaluate(car, index, Norm("paper2008")).value, rel=1.5e-3)
 
 
+@pytest.mark.campaign
 def test_another_integrator_another_input_and_another_quadrature():
     """Mean spectra of one long run with the time-stepping integrator, integrated without the linear model."""
     car, period = paper_quarter_car(series(10.0)), 40.0

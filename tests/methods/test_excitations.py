@@ -163,6 +163,7 @@ def test_simulated_responses_are_the_norms(seed):
     assert by_time.value == pytest.approx(norm, rel=1e-6, abs=4.0 * by_time.standard_error)
 
 
+@pytest.mark.campaign
 def test_friction_under_all_excitations_by_three_methods():
     """Simulation against statistical linearisation, which is within 3 % where it says ok."""
     mount = Spring(3e3) | Damper(20.0) | it.Friction(1.0)

@@ -31,6 +31,7 @@ def honest(estimate):
     assert estimate.status.ok or estimate.status.message
 
 
+@pytest.mark.campaign
 @settings(max_examples=6)
 @given(
     networks(depth=1, most=3), elements(), logarithmic(1.0, 1e3), logarithmic(1e-5, 1e-2), st.booleans(), st.booleans()

@@ -213,6 +213,7 @@ def by_hand(car, omega, force, amplitude):
     return at(10.0**high)[1]
 
 
+@pytest.mark.campaign
 @settings(max_examples=20)
 @given(networks(depth=2, most=4), elements(), logarithmic(1.0, 1e4), st.booleans())
 def test_peaks_of_random_networks_by_bisection_between_nodes(inner, other, force, series):
@@ -240,6 +241,7 @@ def test_two_side_by_side_add_up_and_of_two_end_to_end_the_weaker_counts(index, 
     assert value(behind, index) == pytest.approx(value(weaker, index), rel=1e-6)
 
 
+@pytest.mark.campaign
 @settings(max_examples=30)
 @given(networks(depth=2, most=4), elements(), logarithmic(1.0, 1e4), logarithmic(1.0, 1e4), st.booleans())
 def test_random_networks_meet_their_own_equation(inner, other, force, second, series):

@@ -105,7 +105,7 @@ def test_whatever_shares_the_work_the_front_is_the_same(monkeypatch):
     assert facts(shared) == facts(found(3))
 
 
-@pytest.mark.parametrize("most", [2, 4])
+@pytest.mark.parametrize("most", sampled([2, 4], [2]))
 def test_points_are_designs_with_their_values(most):
     result = found(most)
     for number, several in result.by_elements.items():

@@ -57,6 +57,7 @@ def assert_equal_admittances(one, other, rng):
     np.testing.assert_allclose(admittance(other, found), admittance(one, values), rtol=1e-12)
 
 
+@pytest.mark.campaign
 def test_transformed_values_have_the_same_admittance():
     rng = np.random.default_rng(3)
     for members in equivalence_classes(up_to(4)):

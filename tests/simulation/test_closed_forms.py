@@ -590,6 +590,7 @@ def test_two_crossings_within_one_step() -> None:
 # The energy account
 
 
+@pytest.mark.campaign
 def test_energy_of_every_kind_of_input() -> None:
     """Held, bent and smooth signals on roads, forces and the rig, with the delay of the rear wheel."""
     leg = (it.Spring(4e5) | it.Damper(2000.0)) - it.Gap(5e-5) - (it.Inerter(150.0) | it.Friction(25.0))

@@ -106,6 +106,7 @@ def compared(seed: int) -> int:
     return len(expected)
 
 
+@pytest.mark.campaign
 def test_a_general_solver_finds_the_same() -> None:
     assert sum(compared(seed) for seed in range(4)) > 10
 

@@ -110,6 +110,7 @@ def ride_comfort(numerator, denominator):
         return np.nan
 
 
+@pytest.mark.campaign
 def test_the_best_admittance_of_degree_one_is_that_of_the_literature():
     """Wang and Su (2008), Table 1: the lowest J1 beside k = 120 kN/m is that of damper and inerter in series."""
     found = best_admittance(ride_comfort, 1, damping=3e3, omega=20.0, starts=5)

@@ -163,6 +163,7 @@ def ends_are_lowest(real: np.ndarray) -> bool | None:
     return None if abs(least - 1.0) < 1e-3 else bool(least > 1.0)
 
 
+@pytest.mark.campaign
 def test_regular_biquadratics_need_two_reactive_elements():
     """Jiang and Smith (2011): regular ones, and only they, are realised by two of them, with at most three dampers."""
     rng, kinds = np.random.default_rng(8), Counter()

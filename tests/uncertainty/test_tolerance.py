@@ -287,7 +287,7 @@ def test_the_interval_of_a_quantile_covers(count, share):
     assert inside >= 0.95 * 400 - 3.0 * np.sqrt(400 * 0.05 * 0.95)
 
 
-@pytest.mark.parametrize("seed", sampled(range(3), [0]))
+@pytest.mark.parametrize("seed", sampled(range(3)))
 def test_a_robust_quantile_is_that_of_its_design(seed):
     """By a sample of its own: within its interval of that by 4096 samples, not below as that of the search."""
     spread = {"c": 0.4, "b": 0.4}
@@ -380,6 +380,7 @@ def test_what_linear_analysis_leaves_out_does_not_scatter_in_silence(spread: dic
     assert quantile.status.ok == (not {"f", "g"} & set(spread))
 
 
+@pytest.mark.campaign
 def test_a_method_that_simulates_sees_friction_scatter() -> None:
     method = it.ExpectedValue(realisations=2, seed=1)
     found = it.tolerance_analysis(rubbing(), J1, method, spread={"f": 0.5}, samples=16)

@@ -66,6 +66,20 @@ def is_prefixed(given: str, unit: str) -> bool:
     return given in (unit, *(name for _, _, name in _PREFIXES.get(unit, ())))
 
 
+def unit_choices() -> dict[str, list[tuple[float, float, Scale]]]:
+    """Units that suit values of an SI unit, the largest first, each with the range of sizes that it suits.
+
+    `choose_scale` takes the first one that suits the middle value, and the SI unit if none does.
+
+    >>> unit_choices()["m/N"][-1]
+    (1e-10, 1.0, Scale(factor=1000000.0, unit='um/N'))
+    """
+    return {
+        unit: [(max(least, _SMALL / factor), _LARGE / factor, Scale(factor, name)) for least, factor, name in choices]
+        for unit, choices in _PREFIXES.items()
+    }
+
+
 def format_number(value: float, digits: int = 6, sign: str = "") -> str:
     """Number as text with so many significant digits, without a power of ten unless far from 1; "n/a" for nan.
 

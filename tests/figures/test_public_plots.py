@@ -33,6 +33,33 @@ def test_bode_is_the_closed_form() -> None:
     np.testing.assert_allclose(np.exp(1j * angle), expected / np.abs(expected), rtol=0, atol=1e-8)
 
 
+def test_the_phase_of_delays_is_within_half_a_turn() -> None:
+    """The wheelbase delay of a half car turns it many times: by -4700 degrees if it were unwrapped."""
+    strut = it.Spring(K) | it.Damper(C)
+    car = it.HalfCar(
+        sprung_mass=500.0,
+        pitch_inertia=1200.0,
+        unsprung_mass_front=40.0,
+        unsprung_mass_rear=35.0,
+        tyre_stiffness_front=TYRE,
+        tyre_stiffness_rear=TYRE,
+        distance_front=1.2,
+        distance_rear=1.4,
+        front=strut,
+        rear=strut,
+    )
+    phase = it.plot_bode(car, it.RideComfort(ROAD))[1]
+    for line in phase.lines:
+        frequency, angle = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
+        breaks = np.flatnonzero(np.isnan(angle))
+        assert breaks.size > 2
+        assert np.nanmax(np.abs(angle)) <= 180.0
+        np.testing.assert_allclose(angle[breaks - 1], -angle[breaks + 1])
+        np.testing.assert_allclose(np.abs(angle[breaks - 1]), 180.0)
+        assert np.nanmax(np.abs(np.diff(angle))) <= 180.0  # no line across the plot
+        assert np.all(np.diff(frequency) >= 0.0)
+
+
 def test_bode_of_an_index_is_that_of_its_response() -> None:
     road = ROAD
     by_index = it.plot_bode(CAR, it.RideComfort(road))[0].lines[0].get_data()

@@ -96,6 +96,20 @@ def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     stale.wait_for()
 
 
+def test_windows_that_open_at_once_all_begin_at_the_best(
+    served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    """None of them outdates the question of another one, however late it is answered."""
+    windows = [visitors(served) for _ in range(3)]
+    for window in windows:
+        window.page.goto(served.link, wait_until="commit")
+    for window in windows:
+        window.page.wait_for_selector("[data-connection=ready]", state="attached")
+        window.settled()
+        assert window.page.locator(".answers .pick").count() > 1
+        assert window.page.get_by_text("not chosen yet").count() == 0
+
+
 def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()

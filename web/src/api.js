@@ -23,10 +23,15 @@ export class Lost extends Error {}
  * upload: (path: string, file: Blob) => Promise<any>, blob: (path: string, body?: unknown) => Promise<Blob>,
  * events: (path: string, told: (event: string, data: any) => void, signal?: AbortSignal) => Promise<void>}} Api */
 
+/** This window, as the server tells it from others: what it asks outdates nothing that another one has asked. */
+export const CLIENT = crypto.randomUUID?.() ?? String(Math.random());
+
+let sequence = 0;
+
 /** Asks as of now in the name of a part of the page: what was asked in that name before is outdated.
  * @param {Api} api @param {string} path @param {string} name @param {object} body */
 export const postNow = (api, path, name, body) =>
-  api.post(path, { ...body, client: `page.${name}`, sequence: Date.now() });
+  api.post(path, { ...body, client: `${CLIENT}.${name}`, sequence: (sequence += 1) });
 
 /** @param {() => string} token @returns {Api} */
 export function createApi(token) {

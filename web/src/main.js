@@ -4,7 +4,7 @@ import { render } from "preact";
 import "./page.css";
 import "./vehicles/vehicles.css";
 import "./plots/plots.css";
-import { Lost, createApi } from "./api.js";
+import { CLIENT, Lost, createApi } from "./api.js";
 import { isUnauthorised, keepAsking } from "./asking.js";
 import { Page, keepDrawing } from "./page.js";
 import { html } from "./parts/html.js";
@@ -101,6 +101,6 @@ async function compiled() {
 
 const place = /** @type {HTMLElement} */ (document.getElementById("page"));
 keepDrawing(store, () => render(html`<${Page} store=${store} api=${api} enter=${enter} />`, place));
-keepAsking(store, api, crypto.randomUUID?.() ?? String(Math.random()), () => findWork(store, api));
+keepAsking(store, api, CLIENT, () => findWork(store, api));
 keepRemembering(store);
 void connect();

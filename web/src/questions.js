@@ -27,6 +27,9 @@ export function baselineOf({ study, values }) {
 export const allDesigns = (document) =>
   Object.keys(document.study.layouts ?? {}).map((layout) => designOf({ ...document, layout }));
 
+/** Whether the page is about records, whose fit is the next thing to do. @param {State} state */
+export const isFitting = ({ view, records }) => view.tab === "rig" && records.length > 0;
+
 /** The index by which designs are ranked. @param {State} state @returns {string | undefined} */
 export function goalOf({ view, history }) {
   const indices = indicesIn(history.present.study);

@@ -11,6 +11,7 @@ import { indicesIn, nextLayout, textOf } from "./state/document.js";
 /** @import { Api } from "./api.js" */
 
 const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
+const AGAIN = 1000; // [ms] until a server that does not answer is asked again
 const LOOK = 300; // [ms] between two looks at work that goes on
 
 /** The best values of layouts, taken into the document; returns what to tell. @param {Store} store @param {Api} api
@@ -104,14 +105,9 @@ export async function beginAtBest(store, api, gesture = null) {
   if (!index || !method) return;
   store.dispatch({ type: "choosing", study });
   try {
-    const parts = await api.post("study/parts", { study });
-    const layouts = Object.keys(parts.layouts).filter((name) => parts.layouts[name].free_networks.length === 0);
-    if (layouts.every((name) => parts.layouts[name].free.length === 0)) return;
-    if (!(await isSmall(api, study, layouts[0]))) return;
-    const body = { study, layouts, indices: [index], method, methods: [method] };
-    const { designs } = await postNow(api, "panel/optimise", "opening", body);
+    const designs = await untilFound(() => bestAtFirst(api, study, index, method));
     const { present } = store.get().history;
-    if (present.study !== study || Object.keys(present.values).length > 0) return;
+    if (designs.length === 0 || present.study !== study || Object.keys(present.values).length > 0) return;
     takeOptima(store, designs, gesture, study);
     const doubts = doubted(designs.flatMap(membersOf));
     if (doubts) store.say(doubts.trim());
@@ -119,6 +115,32 @@ export async function beginAtBest(store, api, gesture = null) {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   } finally {
     store.dispatch({ type: "chosen", study });
+  }
+}
+
+/** The best designs of all layouts; none where nothing is free, or where they take longer than a person waits.
+ * @param {Api} api @param {any} study @param {string} index @param {string} method @returns {Promise<any[]>} */
+async function bestAtFirst(api, study, index, method) {
+  const parts = await api.post("study/parts", { study });
+  const layouts = Object.keys(parts.layouts).filter((name) => parts.layouts[name].free_networks.length === 0);
+  if (layouts.every((name) => parts.layouts[name].free.length === 0)) return [];
+  if (!(await isSmall(api, study, layouts[0]))) return [];
+  const body = { study, layouts, indices: [index], method, methods: [method] };
+  return (await postNow(api, "panel/optimise", "opening", body)).designs;
+}
+
+const TRIES = 5; // of a server that does not answer, a second apart
+
+/** What is found, asked again where the server does not answer. @template T @param {() => Promise<T>} find
+ * @returns {Promise<T>} */
+async function untilFound(find) {
+  for (let tries = 1; ; tries += 1) {
+    try {
+      return await find();
+    } catch (error) {
+      if (!(error instanceof Lost) || tries === TRIES) throw error;
+      await new Promise((resolve) => setTimeout(resolve, AGAIN));
+    }
   }
 }
 

@@ -223,8 +223,8 @@ test("a doubt is told once for all that it is about, and before anything else", 
     status: "inaccurate",
     message: "friction is large",
   };
-  assert.match(budgetTold(budget, "S3", "S1"), /^Unreliable: .*friction is large\. At f = 12 N/);
-  assert.match(budgetTold({ ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
+  assert.match(budgetTold(null, budget, "S3", "S1"), /^Unreliable: .*friction is large\. At f = 12 N/);
+  assert.match(budgetTold(null, { ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
 });
 
 test("only what is given is handed on: no withheld device, no values of another study", async () => {

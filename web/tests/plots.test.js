@@ -69,6 +69,32 @@ test("a path reads back to its data, linear and logarithmic, whole and in part",
   }
 });
 
+test("a phase leaves at one edge and goes on at the other, and loses no sample", () => {
+  const x = Array.from({ length: 60 }, (_, i) => 1 + i / 10);
+  const phases = x.map((at) => ((((-97 * at + 180) % 360) + 360) % 360) - 180); // as a delay turns it
+  const curve = { name: "S1", colour: "s1", x, y: phases, turn: 360 };
+  const plot = { ...PLOT, x: { what: "frequency", unit: "Hz" }, y: { what: "phase", unit: "°", from: -180, to: 180 } };
+  const laid = layoutOf({ ...plot, curves: [curve] }, { width: 600, height: 300, font: 11 });
+  const numbersOf = (line) => line.split("L").map((pair) => pair.split(" ").map(Number));
+  const lines = laid.paths[0].slice(1).split("M").map(numbersOf);
+  const turns = phases.filter((each, i) => i > 0 && Math.abs(each - phases[i - 1]) > 180).length;
+  assert.equal(lines.length, turns + 1);
+  assert.equal(lines.flat().length, x.length + 2 * turns);
+  lines.slice(1).forEach((line, i) => {
+    near(lines[i].at(-1)[1], laid.y.at(-180), 0.051);
+    near(line[0][1], laid.y.at(180), 0.051);
+    near(line[0][0], laid.x.at((180 + 360 * i) / 97), 0.11);
+  });
+});
+
+test("the title of an axis keeps off the uppermost number, also in a low plot", () => {
+  for (const height of [90, 120, 200, 400]) for (const font of [11, 14]) {
+    const { titles, y } = layoutOf(PLOT, { width: 500, height, font });
+    const highest = Math.min(...y.ticks.map(({ at }) => at)) + 0.35 * font - 0.75 * font; // the upper edge of digits
+    assert.ok(highest - (titles.y.y + 0.25 * font) >= 0.3 * font, `${height} ${font}`);
+  }
+});
+
 test("what cannot be drawn breaks a curve, and nothing else", () => {
   const curve = { name: "S1", colour: "s1", x: [1, 2, 3, 4, 5], y: [1, null, 3, -4, 5] };
   const both = [false, true].map((log) => layoutOf({ ...PLOT, y: { ...PLOT.y, log }, curves: [curve] },

@@ -20,7 +20,7 @@ from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.identification.sections import CHOOSE
 from inerter.files.study import KIND
 from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
-from inerter.formatting import capital
+from inerter.formatting import capital, typeset_unit, unit_choices
 from inerter.identification.models import MODELS
 from inerter.indices.registry import INDICES
 from inerter.methods.linear import CONVENTIONS
@@ -55,6 +55,13 @@ def about() -> dict[str, Any]:
             field.unit: {letter: f"{round(1e6 * one.mean)}e-6 m^3" for letter, one in ROAD_CLASSES.items()}
             for field in ROAD_QUANTITIES
             if field.key == "roughness"
+        },
+        "units": {
+            unit: [
+                {"least": least, "most": most, "factor": scale.factor, "unit": typeset_unit(scale.unit)}
+                for least, most, scale in choices
+            ]
+            for unit, choices in unit_choices().items()
         },
         "free_networks": [
             {"key": one.name, **schema}

@@ -1,16 +1,16 @@
 // Which layout: all of them ranked by the goal, each with its network, its value, and what it is against the baseline.
 
-import { treeOf, unchosenIn } from "../library.js";
+import { unchosenIn } from "../library.js";
 import { methodChoice } from "../methods.js";
 import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
-import { indicesIn, nextLayout, textOf } from "../state/document.js";
-import { aligned, estimated, placed, withUnit } from "../state/scale.js";
+import { indicesIn, nextLayout } from "../state/document.js";
+import { aligned, estimated, placed, scaled, unitFor, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
-import { html, useState } from "../parts/html.js";
+import { html, useMemo, useState } from "../parts/html.js";
 import { layoutColour } from "../parts/colours.js";
 import { useShown } from "../parts/shown.js";
-import { Sketch } from "./sketch.js";
+import { Sketch, sketchesOf } from "./sketch.js";
 import { problemsOf } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -55,6 +55,10 @@ function Ranking({ store, answer: { is, value, before } }) {
   const others = value?.rows?.[0]?.others ?? [];
   const baseline = baselineOf(document).layout;
   const { goal } = value ?? {};
+  /** @param {string} unit @param {(row: any) => unknown} of */
+  const written = (unit, of) => unitFor(state.about, rows.map(of), unit);
+  const units = goal && { goal: written(goal.unit, (row) => row.value), others: others.map(
+    (/** @type {any} */ { unit }, /** @type {number} */ i) => written(unit, (row) => row.others[i].value)) };
   const isRight = before ? isRightStill(state, "decision") : () => true;
   /** @param {KeyboardEvent} event */
   const turn = (event) => {
@@ -65,42 +69,48 @@ function Ranking({ store, answer: { is, value, before } }) {
     event.preventDefault();
     /** @type {HTMLElement} */ (next).focus();
   };
+  const { parts, trees, about } = state;
+  const sketches = useMemo(() => sketchesOf(state), [document.study.layouts, parts, trees, about]);
   return html`<div class="scroll" role="group" aria-label="Layouts" onKeyDown=${turn}>
     <table><thead><tr><th scope="col">layout</th>
-      <th scope="col" title=${goal && withUnit(goal.title, goal.unit)}>${goal ? withUnit(goal.index, goal.unit)
-        : goalOf(state)}</th>
+      <th scope="col" title=${goal && withUnit(goal.title, units.goal.unit)}>${
+        goal ? withUnit(goal.index, units.goal.unit) : goalOf(state)}</th>
       <th scope="col">against ${baseline}</th>
-      ${others.map((/** @type {any} */ { index, title, unit }) => html`<th scope="col" key=${index}
-        title=${withUnit(title, unit)}>${withUnit(index, unit)}</th>`)}</tr></thead>
-    <tbody>${rows.map((row) => html`<${Row} key=${row.layout} store=${store} row=${row}
+      ${others.map((/** @type {any} */ { index, title }, /** @type {number} */ i) => html`<th scope="col" key=${index}
+        title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
+    <tbody>${rows.map((row) => html`<${Row} key=${row.layout} store=${store} row=${row} units=${units}
+      sketched=${sketches[row.layout] ?? []}
       stale=${before && !isRight(row.layout)} compared=${!before || isRight(baseline)}
       missing=${is === "coming" ? "…" : "–"} />`)}</tbody></table></div>`;
 }
 
 /** A layout; `stale` where its numbers are of before, `compared` unless those of the baseline are.
- * @param {{store: Store, row: any, stale: boolean, compared: boolean, missing: string}} props */
-function Row({ store, row, stale, compared, missing }) {
+ * @param {{store: Store, row: any, units: any, sketched: import("./sketch.js").Sketched[], stale: boolean,
+ * compared: boolean, missing: string}} props */
+function Row({ store, row, units, sketched, stale, compared, missing }) {
   const state = store.get();
   const { layout, is_baseline: isBaseline, unchosen = [], others } = row;
   const document = state.history.present;
   const on = layout === document.layout;
   const select = () => on || store.change({ type: "selected", layout });
-  const text = textOf({ ...document, layout, strut: Object.keys(Object(document.study.layouts?.[layout]))[0] });
   const goal = goalOf(state);
   const classes = [on && "on", unchosen.length > 0 && "quiet", stale && "stale", !compared && "apart"].filter(Boolean);
   return html`<tr class=${classes.join(" ")} onClick=${select}>
     <th scope="row"><button type="button" class="pick" aria-pressed=${on} title=${layout}>
-      <${Sketch} state=${state} tree=${treeOf(state, text)} />
+      ${sketched.map(({ struts, tree }) => html`<span key=${struts.join()} class="of" title=${struts.join(", ")
+        || undefined}><${Sketch} state=${state} tree=${tree} small=${sketched.length > 1} /></span>`)}
       <span style=${{ color: layoutColour(document, layout) }}>${layout}
         ${isBaseline && html`<small aria-hidden="true">baseline</small>`}</span></button></th>
     <td class="number" title=${row.message} data-index=${on ? goal : undefined}
-      data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured} result=${row} />`}</td>
+      data-value=${row.value}>${row.value === undefined ? missing : html`<${Measured}
+        result=${scaled(row, units.goal.factor)} />`}</td>
     <td class=${`number ${better(row)}`} data-better=${row.improvement_percent}>
       <${Against} row=${{ ...row, status: null }} unchosen=${unchosen.length > 0} /></td>
-    ${others.map((/** @type {any} */ other) => html`<td class=${`number other ${unchosen.length ? "" : better(other)}`}
-      key=${other.index} data-index=${on ? other.index : undefined} data-value=${other.value} title=${other.message}>
+    ${others.map((/** @type {any} */ other, /** @type {number} */ i) => html`<td
+      class=${`number other ${unchosen.length ? "" : better(other)}`} key=${other.index} title=${other.message}
+      data-index=${on ? other.index : undefined} data-value=${other.value}>
       <${Against} row=${{ ...other, is_baseline: isBaseline || unchosen.length > 0 }} unchosen=${false} />
-      <div class="scatter">${amountText(other)}</div></td>`)}
+      <div class="scatter">${amountText(units ? scaled(other, units.others[i].factor) : other)}</div></td>`)}
   </tr>`;
 }
 

@@ -1,6 +1,6 @@
 // Two to four designs side by side: layouts of the study, and designs that were kept.
 
-import { withUnit } from "../state/scale.js";
+import { scaled, unitFor, withUnit } from "../state/scale.js";
 import { Chip, Select, Table, formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { Being } from "../parts/clock.js";
@@ -63,10 +63,13 @@ function Comparison({ state, answer, compared }) {
         ${columns.map(({ network }, i) => html`<td key=${i}><code>
           ${[...new Set(typeof network === "string" ? [network] : Object.values(network))].join("; ")}</code></td>`)}
       </tr>
-      ${columns[0].results.map((first, row) => html`<tr key=${first.index}>
-        <th scope="row"><b>${first.index}</b> <span class="quiet">${withUnit(first.title, first.unit)}</span></th>
-        ${columns.map(({ results, unchosen }, i) => html`<${Value} key=${i} result=${results[row]} first=${i === 0}
-          unchosen=${unchosen.length > 0 || columns[0].unchosen.length > 0} />`)}</tr>`)}
+      ${columns[0].results.map((first, row) => {
+        const { unit, factor } = unitFor(state.about, columns.map(({ results }) => results[row].value), first.unit);
+        return html`<tr key=${first.index}>
+          <th scope="row"><b>${first.index}</b> <span class="quiet">${withUnit(first.title, unit)}</span></th>
+          ${columns.map(({ results, unchosen }, i) => html`<${Value} key=${i} result=${results[row]} factor=${factor}
+            first=${i === 0} unchosen=${unchosen.length > 0 || columns[0].unchosen.length > 0} />`)}</tr>`;
+      })}
       ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>
         ${columns.map(({ numbers }, i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
   <//>
@@ -75,11 +78,12 @@ function Comparison({ state, answer, compared }) {
 }
 
 /** A value, and what lies between it and the first one's.
- * @param {{result: any, first: boolean, unchosen: boolean}} props */
-function Value({ result, first, unchosen }) {
+ * @param {{result: any, factor: number, first: boolean, unchosen: boolean}} props */
+function Value({ result, factor, first, unchosen }) {
   const { value, best, message } = result;
   return html`<td class=${`number ${best ? "best" : ""}`} title=${message} data-value=${value}>
-    <${Measured} result=${result} />${!first && html`<${Difference} result=${result} unchosen=${unchosen} />`}</td>`;
+    <${Measured} result=${scaled(result, factor)} />${!first
+    && html`<${Difference} result=${result} unchosen=${unchosen} />`}</td>`;
 }
 
 /** What lies between them, first what makes that doubtful. @param {{result: any, unchosen: boolean}} props */

@@ -7,7 +7,7 @@ import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
-import { printed, rounded, shown, withUnit } from "../state/scale.js";
+import { printed, rounded, shown, times, unitFor, withUnit } from "../state/scale.js";
 import { takeAndTell } from "../working.js";
 import { indexChoices, indicesOf, signed } from "./answers.js";
 import { Files } from "./files.js";
@@ -22,7 +22,8 @@ import { Files } from "./files.js";
 /** `knee`: the place of the knee among the points.
  * @typedef {Outcome & {layout: string, knee: number | null, points: Point[],
  * problem_digests?: string[]}} Front */
-/** An index with its title and unit. @typedef {{index: string, title: string, unit: string}} Index */
+/** An index with its title and unit; its values times `factor` are in the unit in which they are written.
+ * @typedef {{index: string, title: string, unit: string, factor: number}} Index */
 /** A point among all: `number` among those of its front, from 1 on.
  * @typedef {{front: Front, point: Point, number: number, isKnee: boolean}} Entry */
 
@@ -67,7 +68,7 @@ const listed = (names) => `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`
 /** @param {{store: Store, api: Api, job: Job}} props */
 export function FrontResult({ store, api, job }) {
   const { result } = job;
-  /** @type {Index[]} */
+  /** @type {{index: string, title: string, unit: string}[]} */
   const indices = result.indices;
   /** @type {Front[]} */
   const fronts = result.fronts;
@@ -77,18 +78,21 @@ export function FrontResult({ store, api, job }) {
       problem_digests });
     if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout });
   };
-  return html`<${FrontView} indices=${indices} fronts=${fronts} take=${take}
+  return html`<${FrontView} about=${store.get().about} indices=${indices} fronts=${fronts} take=${take}
       baseline=${result.baseline ?? baselineOf(store.get().history.present).layout} />
     <${Files} store=${store} api=${api} job=${job} />`;
 }
 
 /** Fronts in a plot, with a card of the point that is looked at. Of three indices two are drawn, which can be chosen.
  * At first all fronts are drawn, or the first of them `alone`.
- * @param {{indices: Index[], fronts: Front[], baseline: string, take: (entry: Entry) => void, alone?: boolean}}
- * props */
-export function FrontView({ indices, fronts: every, baseline, take, alone = false }) {
+ * @param {{about: any, indices: {index: string, title: string, unit: string}[], fronts: Front[], baseline: string,
+ * take: (entry: Entry) => void, alone?: boolean}} props */
+export function FrontView({ about, indices: all, fronts: every, baseline, take, alone = false }) {
   const names = every.map(({ layout }) => layout);
   const [only, setOnly] = useChoice(alone ? [...names, ALL] : [ALL, ...names]);
+  /** @type {Index[]} */
+  const indices = useMemo(() => all.map((each) => ({ ...each, ...unitFor(about, every.flatMap(({ points }) =>
+    points.map(({ values }) => values[each.index])), each.unit) })), [about, all, every]);
   const symbols = indices.map(({ index }) => index);
   const [across, setAcross] = useChoice(symbols);
   const [up, setUp] = useChoice(symbols.filter((symbol) => symbol !== across));
@@ -128,8 +132,8 @@ function declared(indices, drawn, fronts, colours) {
   const [first, second] = drawn;
   /** @param {string} symbol */
   const axis = (symbol) => {
-    const { title = "", unit = "" } = indices.find(({ index }) => index === symbol) ?? {};
-    return { what: WORD.test(symbol) ? title : `${title} ${symbol}`, unit, padded: true };
+    const { title = "", unit = "", factor = 1 } = indices.find(({ index }) => index === symbol) ?? {};
+    return { what: WORD.test(symbol) ? title : `${title} ${symbol}`, unit, size: 1 / factor, padded: true };
   };
   const all = fronts.map((front) => entriesOf(front).filter(({ point: { values } }) =>
     drawn.every((index) => typeof values[index] === "number")));
@@ -143,7 +147,8 @@ function declared(indices, drawn, fronts, colours) {
       const { front: { layout }, point: { status, values, texts, network }, isKnee } = entry;
       const [x, y] = drawn.map((index) => values[index]);
       const name = `${isOk(status) ? "" : `${status}: `}${layout}${isKnee ? ", the knee" : ""}`;
-      const read = indices.map(({ index, unit }) => `${index} ${shown(values[index], 4)} ${printed(unit)}`.trim());
+      const read = indices.map(({ index, unit, factor }) =>
+        `${index} ${shown(times(values[index], factor), 4)} ${printed(unit)}`.trim());
       return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry,
         lines: [name, read.join(",  "), network ?? "", valuesIn(texts)].filter(Boolean),
         label: `${[name, network].filter(Boolean).join(", ")}: ${read.join(", ")}; take it into the editor` };
@@ -175,7 +180,8 @@ function tableOf({ points }, indices) {
     heads: ["layout", "point", ...networks, ...indices.map(({ index, unit }) => withUnit(index, unit)), "status",
       ...names],
     rows: points.map(({ of: { front, point, number } }) => [front.layout, number,
-      ...networks.map(() => point.network ?? ""), ...indices.map(({ index }) => point.values[index]), point.status,
+      ...networks.map(() => point.network ?? ""), 
+      ...indices.map(({ index, factor }) => times(point.values[index], factor)), point.status,
       ...names.map((name) => point.texts[name] ?? "")]),
   };
 }
@@ -192,10 +198,11 @@ function Card({ entry, fronts, indices, baseline, take }) {
     ${!isOk(point.status) && html`<p class="problem"><b>Unreliable.</b> ${point.status}</p>`}
     <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [other.name] : []),
         ...(improvements ? [[`below ${baseline}`, `relative to the lowest value of ${baseline}`]] : [])]}>
-      ${indices.map(({ index, title, unit }) => html`<tr key=${index}><th scope="row" title=${title}>${index}</th>
-        <td class="number" data-value=${point.values[index]}>${shown(point.values[index], 4)}
+      ${indices.map(({ index, title, unit, factor }) => html`<tr key=${index}>
+        <th scope="row" title=${title}>${index}</th>
+        <td class="number" data-value=${point.values[index]}>${shown(times(point.values[index], factor), 4)}
           ${" "}<span class="unit">${printed(unit)}</span></td>
-        ${other && html`<td class="number">${shown(other.point.values[index], 4)}</td>`}
+        ${other && html`<td class="number">${shown(times(other.point.values[index], factor), 4)}</td>`}
         ${improvements && html`<td class="number">${signed(improvements[index])}</td>`}</tr>`)}
     <//>
     <p>${valuesIn(point.texts)}</p>

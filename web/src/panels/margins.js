@@ -8,7 +8,7 @@ import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { doubted, isOk } from "../parts/doubts.js";
 import { html } from "../parts/html.js";
-import { printed, shown } from "../state/scale.js";
+import { printed, shown, unitFor } from "../state/scale.js";
 import { begin, ended } from "../working.js";
 import { indicesOf, signed } from "./answers.js";
 import { JobHead, RUNNING } from "./work.js";
@@ -99,15 +99,17 @@ function Budget({ store, api, indices }) {
       key=${goalOf(state)} choices=${indices.map(({ symbol }) => symbol)} />
     <button class="edged">Compute</button>
     <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
-      ? budgetTold(value, document.layout, baselineOf(document).layout) : sentence}</p>
+      ? budgetTold(state.about, value, document.layout, baselineOf(document).layout) : sentence}</p>
   </form></section>`;
 }
 
-/** What a budget says, first whether it can be relied on. @param {any} found @param {string} layout
- * @param {string} baseline */
-export function budgetTold({ parameter, value, unit, standard_error, status, message }, layout, baseline) {
+/** What a budget says, first whether it can be relied on. @param {any} about @param {any} found
+ * @param {string} layout @param {string} baseline */
+export function budgetTold(about, { parameter, value, unit, standard_error, status, message }, layout, baseline) {
   if (typeof value !== "number") return message || "There is no break-even value.";
-  const error = standard_error ? ` ± ${shown(standard_error, 2)}` : "";
+  const own = unitFor(about, [value], unit);
+  const error = standard_error ? ` ± ${shown(standard_error * own.factor, 2)}` : "";
   const doubts = doubted([{ of: "the budget", status, message }]);
-  return `${doubts}At ${parameter} = ${shown(value)}${error} ${printed(unit)}, ${layout} is as good as ${baseline}.`;
+  return `${doubts}At ${parameter} = ${shown(value * own.factor)}${error} ${printed(own.unit)}, ${
+    layout} is as good as ${baseline}.`;
 }

@@ -108,7 +108,8 @@ function declared(answers, { index, label, document, stale }) {
       name: several ? `${each.name} ${short[labels.indexOf(each.label)]}` : each.name,
       unnamed: several && each.layout === baseline && each.layout !== document.layout,
       x: frequency,
-      y: what === "gain" ? each.gain : degrees(each.phase),
+      y: what === "gain" ? each.gain : each.phase.map((angle) => angle && (180 / Math.PI) * angle),
+      turn: what === "gain" ? undefined : 360,
       colour: several && each.layout !== baseline ? numberedColour(labels.indexOf(each.label))
         : colours[each.layout] ?? "s4",
       dash: !pale && each.layout === baseline,
@@ -129,10 +130,3 @@ function declared(answers, { index, label, document, stale }) {
     ticks: [-180, -90, 0, 90, 180] } },
   };
 }
-
-/** Phases in degrees, broken where they pass 180°. @param {(number | null)[]} phase */
-const degrees = (phase) => phase.map((value, i) => {
-  const last = phase[i - 1];
-  const passes = typeof value === "number" && typeof last === "number" && Math.abs(value - last) > Math.PI;
-  return value === null || passes ? null : (180 / Math.PI) * value;
-});

@@ -36,13 +36,13 @@ export function RigPanel({ store, api }) {
     })))}>
       <${Select} label="Model" name="model" choices=${models.map((/** @type {string} */ model) =>
         (model === CHOOSE ? [model, "choose among all (minutes)"] : model))} />
-      <button class="main">Identify</button>
+      <button class=${fits.length === 0 ? "main" : "edged"}>Identify</button>
     </form>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
     <ul class="records">
       ${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api}
         record=${record} />`)}</ul>
-    ${fits.map((job) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} />`)}
+    ${fits.map((job, i) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} main=${i === 0} />`)}
   </div>`;
 }
 
@@ -83,8 +83,8 @@ async function takeIn(store, api, fit) {
  * ask?: {section: string, key: string, example: string}}} Offer */
 
 /** What may be wrong with a fit that is not to be relied on, the likeliest first, and what can be done about it.
- * @param {{store: Store, api: Api, result: any}} props */
-function Causes({ store, api, result }) {
+ * @param {{store: Store, api: Api, result: any, main: boolean}} props */
+function Causes({ store, api, result, main }) {
   /** @type {{sentence: string, explained: number, remedy: string, offers: Offer[]}[]} */
   const causes = result.causes ?? [];
   return causes.length === 0 ? null : html`<h4>Possible causes, most likely first</h4><ol class="causes">
@@ -92,7 +92,7 @@ function Causes({ store, api, result }) {
       ${capital(sentence)}: explains ${Math.round(100 * explained)} % of the residual.
       ${remedy && html` <span class="quiet">${capital(remedy)}.</span>`}
       ${offers.map((offer) => html`<${Offered} key=${offer.label} store=${store} api=${api} result=${result}
-        offer=${offer} main=${number === 0} />`)}</li>`)}</ol>`;
+        offer=${offer} main=${main && number === 0} />`)}</li>`)}</ol>`;
 }
 
 /** @param {string} text */
@@ -124,8 +124,9 @@ function Offered({ store, api, result, offer: { label, model, config = {}, ask }
 const mergedTables = (some, others) => ({ ...some,
   ...Object.fromEntries(Object.entries(others).map(([section, table]) => [section, { ...some[section], ...table }])) });
 
-/** @param {{store: Store, api: Api, job: Job}} props */
-function Fit({ store, api, job }) {
+/** `main`: the newest one, of which one button is the next thing to do.
+ * @param {{store: Store, api: Api, job: Job, main: boolean}} props */
+function Fit({ store, api, job, main }) {
   const { result } = job;
   return html`<section class="fit" data-state=${job.state}>
     <${JobHead} store=${store} api=${api} job=${job} />
@@ -133,7 +134,7 @@ function Fit({ store, api, job }) {
     ${result &&
     html`<${Doubts} members=${[{ of: result.model, status: result.status,
       message: result.reason }]} />
-      <${Causes} store=${store} api=${api} result=${result} />
+      <${Causes} store=${store} api=${api} result=${result} main=${main && !result.device} />
       <${Table} label="Identified values" heads=${[result.model, "value", "95 % interval", ""]}>
         ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
           <th scope="row">${name}</th>
@@ -142,7 +143,7 @@ function Fit({ store, api, job }) {
       <//>
       ${(result.findings ?? []).map((/** @type {string} */ each) => html`<p key=${each} class="quiet">${each}</p>`)}
       ${result.device
-        ? html`<button type="button" class="main"
+        ? html`<button type="button" class=${main ? "main" : "edged"}
           onClick=${() => void takeIn(store, api, result)}>Take the device into the editor</button>`
         : html`<p>${withheld(result)}</p>`}
       ${(result.offers ?? []).map((/** @type {Offer} */ offer) => html`<${Offered} key=${offer.label} store=${store}

@@ -9,7 +9,7 @@ import { searchedLayouts } from "../library.js";
 import { Plot } from "../plot.js";
 import { goalOf } from "../questions.js";
 import { entryAt } from "../state/document.js";
-import { estimated, printed, rounded, shown } from "../state/scale.js";
+import { estimated, printed, rounded, scaled, shown, times, unitFor } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indicesOf, percent } from "./answers.js";
 import { Files } from "./files.js";
@@ -18,6 +18,7 @@ import { FrontView, valuesIn } from "./front.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
+/** @import { WrittenUnit } from "../state/scale.js" */
 /** @import { Declaration, Point } from "../plots/layout.js" */
 /** A network with its elements and the entry of a layout, as in a study document. @typedef {any} Row */
 
@@ -93,25 +94,26 @@ export function SearchResult({ store, api, job }) {
   const take = (row) => store.say(takeNetwork(store, found, row), "taken");
   return html`${views.length > 1 && html`<${IndexChips} indices=${views} picked=${view} pick=${setView} />`}
     ${one ? html`<${Ranking} key=${view} state=${state} found=${found} one=${one} take=${take} />`
-      : html`<${NetworkFront} found=${found} take=${take} />`}
+      : html`<${NetworkFront} about=${state.about} found=${found} take=${take} />`}
     ${job.result && html`<${Files} store=${store} api=${api} job=${job} />`}`;
 }
 
 /** The front over all networks, and over those of fewer elements.
- * @param {{found: any, take: (row: Row) => void}} props */
-function NetworkFront({ found: { front, baseline }, take }) {
+ * @param {{about: any, found: any, take: (row: Row) => void}} props */
+function NetworkFront({ about, found: { front, baseline }, take }) {
   const fronts = useMemo(() => front.fronts.toReversed().map((/** @type {any} */ { elements, points }) =>
     ({ layout: `up to ${elements} element${elements === 1 ? "" : "s"}`, status: "ok", knee: null,
       points: points.map((/** @type {Row} */ row) => ({ ...row, values: row.indices, row,
         texts: { ...row.elements, ...row.values }, improvements: baseline && row.improvements_percent })) })), [front]);
-  return html`<${FrontView} indices=${front.indices} fronts=${fronts} baseline=${baseline ?? ""} alone
+  return html`<${FrontView} about=${about} indices=${front.indices} fronts=${fronts} baseline=${baseline ?? ""} alone
     take=${(/** @type {any} */ { point }) => take(point.row)} />`;
 }
 
 /** The best networks for an index.
  * @param {{state: State, found: any, one: any, take: (row: Row) => void}} props */
 function Ranking({ state, found: { baseline, complete, networks }, one, take }) {
-  const { index, unit, ranking, frontier, real_inerters: real } = one;
+  const { index, ranking, frontier, real_inerters: real } = one;
+  const written = unitFor(state.about, ranking.map((/** @type {Row} */ { value }) => value), one.unit);
   const compared = complete && baseline !== null;
   const better = compared ? [["better by", `than ${baseline}`]] : [];
   /** @type {string[]} */
@@ -119,21 +121,22 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
       ({ of: network, status, message }))} />
     ${ranking.length === 0 && html`<p class="quiet">No network is optimised yet.</p>`}
-    ${frontier.length > 1 && html`<${Frontier} one=${one} baseline=${baseline} take=${take} />`}
+    ${frontier.length > 1 && html`<${Frontier} one=${one} baseline=${baseline} written=${written}
+      take=${take} />`}
     ${ranking.length > 0 && html`<p class="quiet">The best ${ranking.length} ${complete
         ? `of ${networks} networks` : "so far"} (* at a bound)</p>
     <${Table} label="Ranking" heads=${["network", index, ...better, ""]}>
       ${ranking.map((/** @type {Row} */ row, /** @type {number} */ i) => html`<${NetworkRow} key=${row.network}
-        state=${state} row=${row} take=${take} rank=${i + 1} text=${shown(row.value)} unit=${unit}
-        compared=${compared} />`)}
+        state=${state} row=${row} take=${take} rank=${i + 1} written=${written}
+        text=${shown(times(row.value, written.factor))} compared=${compared} />`)}
     <//>`}
     ${methods.map((method) => html`<p class="quiet" key=${method}>With real inerters, elastic and with friction:
         optimised by ${method}</p>
       <${Table} key=${`${method} table`} label=${`Real inerters by ${method}`}
         heads=${["network", index, ...better, ""]}>
         ${real.filter((/** @type {Row} */ row) => row.method === method).map((/** @type {Row} */ row) =>
-          html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take} text=${optimised(row)}
-            unit=${unit} compared=${compared} />`)}
+          html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take} written=${written}
+            text=${optimised(scaled(row, written.factor))} compared=${compared} />`)}
       <//>`)}`;
 }
 
@@ -141,9 +144,9 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
 const optimised = ({ value, standard_error: error }) =>
   (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
 
-/** @param {{state: State, row: Row, rank?: number, text: string, unit: string, compared: boolean,
+/** @param {{state: State, row: Row, rank?: number, text: string, written: WrittenUnit, compared: boolean,
  * take: (row: Row) => void}} props */
-function NetworkRow({ state, row, rank, text, unit, compared, take }) {
+function NetworkRow({ state, row, rank, text, written: { unit, factor }, compared, take }) {
   const { network, status, improvement_percent: part, ideal, same_values: same } = row;
   return html`<tr data-network=${network}>
     <th scope="row"><div class="found"><span>${rank}</span><${Sketch} state=${state} tree=${row.tree} />
@@ -151,23 +154,23 @@ function NetworkRow({ state, row, rank, text, unit, compared, take }) {
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
       ${text} <span class="unit">${printed(unit)}</span>
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
-        shown(same)}`}</div><div class="scatter">ideal ${shown(ideal)}</div>`}</td>
+        shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
     ${compared && html`<td class="number">${percent(part)}</td>`}
     <td><button type="button" onClick=${() => take(row)}>Into the editor</button></td>
   </tr>`;
 }
 
-/** The best value for each number of elements. @param {{one: any, baseline: string | null, take: (row: Row) => void}}
- * props */
-function Frontier({ one, baseline, take }) {
+/** The best value for each number of elements.
+ * @param {{one: any, baseline: string | null, written: WrittenUnit, take: (row: Row) => void}} props */
+function Frontier({ one, baseline, written, take }) {
   const [picked, look] = useState(/** @type {number | null} */ (null));
-  const plot = useMemo(() => frontierOf(one, baseline), [one, baseline]);
+  const plot = useMemo(() => frontierOf(one, baseline, written), [one, baseline]);
   return html`<${Plot} plot=${plot} picked=${picked} look=${look}
     take=${(/** @type {Point} */ { of }) => take(of)} />`;
 }
 
-/** @param {any} one @param {string | null} baseline @returns {Declaration} */
-function frontierOf({ index, title, unit, frontier, baseline_value: base }, baseline) {
+/** @param {any} one @param {string | null} baseline @param {WrittenUnit} written @returns {Declaration} */
+function frontierOf({ index, title, frontier, baseline_value: base }, baseline, { unit, factor }) {
   const counts = frontier.map((/** @type {Row} */ { n_elements: count }) => count);
   const ends = [counts[0], counts.at(-1)];
   const below = typeof base === "number" ? [{ name: baseline ?? "", colour: "s1", dash: true, x: ends,
@@ -175,11 +178,11 @@ function frontierOf({ index, title, unit, frontier, baseline_value: base }, base
   return {
     title: `${index} by number of elements`,
     x: { what: "Number of elements", unit: "", ticks: counts, padded: true },
-    y: { what: `${title} ${index}`, unit, padded: true },
+    y: { what: `${title} ${index}`, unit, size: 1 / factor, padded: true },
     curves: [{ name: "best network", colour: "s3", x: counts,
       y: frontier.map((/** @type {Row} */ { value }) => value) }, ...below],
     points: frontier.map((/** @type {Row} */ row) => {
-      const value = `${index} ${shown(row.value, 4)} ${printed(unit)}`.trim();
+      const value = `${index} ${shown(times(row.value, factor), 4)} ${printed(unit)}`.trim();
       return { curve: 0, x: row.n_elements, y: row.value, doubtful: !isOk(row.status), of: row,
         lines: [row.network, value, valuesIn({ ...row.elements, ...row.values })],
         label: `${row.network}: ${value}; take it into the editor` };

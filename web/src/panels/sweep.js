@@ -6,12 +6,13 @@ import { html, useMemo, useState } from "../parts/html.js";
 import { numbersOf } from "../library.js";
 import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
-import { printed, quantity, shown, withUnit } from "../state/scale.js";
+import { printed, quantity, shown, times, unitFor, withUnit } from "../state/scale.js";
 import { membersOf, takeOptima } from "../working.js";
 import { Files } from "./files.js";
 
 /** @import { Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
+/** @import { WrittenUnit } from "../state/scale.js" */
 /** @import { Declaration, Point as Place } from "../plots/layout.js" */
 /** A number that is swept: its unit as it is written with the size of that in the SI unit, and its value in the study.
  * @typedef {{name: string, words: string, unit: string, own?: number | null,
@@ -41,11 +42,13 @@ export function SweepResult({ store, api, job }) {
     && (!also || String(row[also.name]) === step)), [rows, index, method, step]);
   const isRelative = relative && own.some(({ layout, improvement_percent: part }) =>
     layout !== result.baseline && typeof part === "number");
-  const plot = useMemo(() => declared(own, { of, baseline: result.baseline, isRelative, units: result.units ?? {} }),
-    [own, of, isRelative]);
+  const { about } = store.get();
+  const written = useMemo(() => unitFor(about, own.map(({ value }) => value), own[0]?.unit ?? ""), [about, own]);
+  const plot = useMemo(() => declared(own, { of, baseline: result.baseline, isRelative, written,
+    units: result.units ?? {} }), [own, of, isRelative, written]);
   const [picked, look] = useState(/** @type {number | null} */ (null));
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
-    <${Plot} plot=${plot} table=${tableOf(own, of, result.units ?? {})} picked=${picked} look=${look}
+    <${Plot} plot=${plot} table=${tableOf(own, of, written, result.units ?? {})} picked=${picked} look=${look}
       take=${(/** @type {Place} */ place) => takeSwept(store, of, place.of)} switches=${["x"]}>
       <${IndexChips} indices=${indices} picked=${index} pick=${setIndex} />
       ${methods.length > 1 && html`<${Select} aria-label="Method" value=${method} choices=${methods}
@@ -64,12 +67,13 @@ export function SweepResult({ store, api, job }) {
 const writtenOf = (value, { unit, written }) => quantity(value / (written?.factor ?? 1), written?.unit ?? unit);
 
 /** @param {Row[]} rows
- * @param {{of: Swept, baseline: string, isRelative: boolean, units: {[name: string]: string}}} how
+ * @param {{of: Swept, baseline: string, isRelative: boolean, written: WrittenUnit,
+ * units: {[name: string]: string}}} how
  * @returns {Declaration & {points: Place[]}} */
-function declared(rows, { of, baseline, isRelative, units }) {
+function declared(rows, { of, baseline, isRelative, written: { unit, factor }, units }) {
   const layouts = [...new Set(rows.map(({ layout }) => layout))];
   const colours = coloursOf(layouts, baseline);
-  const { index = "", unit = "" } = rows[0] ?? {};
+  const { index = "" } = rows[0] ?? {};
   /** @param {Row} row */
   const valueOf = (row) => (isRelative ? row.improvement_percent : row.value);
   const sorted = layouts.map((layout) => rows.filter((row) => row.layout === layout)
@@ -80,7 +84,7 @@ function declared(rows, { of, baseline, isRelative, units }) {
     title: `${index} over ${of.words}`,
     x: { what: of.words, unit: of.written?.unit ?? of.unit, size: of.written?.factor, padded: true },
     y: isRelative ? { what: `reduction of ${index} relative to ${baseline}`, unit: "%", zero: true, padded: true }
-      : { what: index, unit },
+      : { what: index, unit, size: 1 / factor },
     curves: layouts.map((layout, i) => ({ name: layout, colour: colours[layout], dash: layout === baseline,
       x: sorted[i].map((row) => row[of.name]), y: sorted[i].map((row) => numberOr(valueOf(row))) })),
     marks: isInside ? [{ x: Number(of.own), text: `study: ${writtenOf(Number(of.own), of)}` }] : [],
@@ -92,10 +96,11 @@ function declared(rows, { of, baseline, isRelative, units }) {
       const reduced = typeof row.improvement_percent === "number" && row.layout !== baseline
         ? `, ${shown(row.improvement_percent, 3)} % below ${baseline}` : "";
       const doubt = isOk(row.status) ? "" : `${row.status}: `;
+      const read = `${index} ${shown(times(row.value, factor), 4)} ${printed(unit)}${reduced}`;
       const here = `${doubt}${row.layout} at ${of.name} = ${writtenOf(row[of.name], of)}`;
       return [{ curve, x: row[of.name], y: value, doubtful: !isOk(row.status), of: row,
-        lines: [here, `${index} ${shown(row.value, 4)} ${printed(unit)}${reduced}`, values].filter(Boolean),
-        label: `${here}: ${index} ${shown(row.value, 4)} ${printed(unit)}${reduced}; ${values}; ${TAKE}`,
+        lines: [here, read, values].filter(Boolean),
+        label: `${here}: ${read}; ${values}; ${TAKE}`,
       }];
     }))),
   };
@@ -104,13 +109,13 @@ function declared(rows, { of, baseline, isRelative, units }) {
 /** @param {unknown} value */
 const numberOr = (value) => (typeof value === "number" ? value : null);
 
-/** @param {Row[]} rows @param {Swept} of @param {{[name: string]: string}} units */
-function tableOf(rows, of, units) {
+/** @param {Row[]} rows @param {Swept} of @param {WrittenUnit} written @param {{[name: string]: string}} units */
+function tableOf(rows, of, { unit, factor }, units) {
   const names = [...new Set(rows.flatMap((row) => Object.keys(row.parameters ?? {})))];
   return {
-    heads: [withUnit(of.words, of.written?.unit ?? of.unit), "layout", withUnit(rows[0]?.index ?? "", rows[0]?.unit),
+    heads: [withUnit(of.words, of.written?.unit ?? of.unit), "layout", withUnit(rows[0]?.index ?? "", unit),
       "below the baseline [%]", "status", ...names.map((name) => withUnit(name, units[name]))],
-    rows: rows.map((row) => [row[of.name] / (of.written?.factor ?? 1), row.layout, numberOr(row.value),
+    rows: rows.map((row) => [row[of.name] / (of.written?.factor ?? 1), row.layout, times(numberOr(row.value), factor),
       numberOr(row.improvement_percent), String(row.status), ...names.map((name) => row.parameters?.[name] ?? "")]),
   };
 }

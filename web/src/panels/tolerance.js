@@ -9,7 +9,7 @@ import { Select, Table, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
-import { shown, withUnit } from "../state/scale.js";
+import { shown, times, unitFor, withUnit } from "../state/scale.js";
 import { indexChoices, indicesOf, percent } from "./answers.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -44,7 +44,7 @@ export function TolerancePanel({ store, api }) {
   </form>
   <${Unchosen} state=${state} designs=${[designOf(document)]} />
   ${value &&
-    html`<${Scattered} value=${value} />
+    html`<${Scattered} about=${state.about} value=${value} />
     <p class="row"><button type="button" onClick=${save}>Save (CSV)</button></p>`}`;
 }
 
@@ -54,8 +54,8 @@ function spreadOf(names, form) {
   return Object.fromEntries(parts.filter(([, part]) => Number(part) > 0));
 }
 
-/** @param {{value: any}} props */
-function Scattered({ value }) {
+/** @param {{about: any, value: any}} props */
+function Scattered({ about, value }) {
   const rows = [
     ["nominal", value.nominal],
     ["mean", value.mean],
@@ -63,14 +63,15 @@ function Scattered({ value }) {
     ["95th percentile", value.quantiles["0.95"]],
     ["worst case", value.worst],
   ];
+  const { unit, factor } = unitFor(about, [value.nominal], value.unit);
   const names = Object.keys(value.total ?? {}).toSorted((a, b) => (value.total[b] ?? 0) - (value.total[a] ?? 0));
   return html`<${Doubts}
     members=${[{ of: `the scatter of ${value.index}`, status: value.status, message: value.message }]} />
     <div class="scattered">
       <${Table} label="Distribution" data-scatter=${value.index}
-        heads=${[`${withUnit(value.index, value.unit)}, ${value.method.replaceAll("-", " ")}`, "value"]}>
+        heads=${[`${withUnit(value.index, unit)}, ${value.method.replaceAll("-", " ")}`, "value"]}>
         ${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th>
-          <td class="number" data-value=${number}>${shown(number)}</td></tr>`)}
+          <td class="number" data-value=${number}>${shown(times(number, factor))}</td></tr>`)}
       <//>
       ${value.histogram.counts.some((/** @type {number} */ count) => count > 0) && html`<${Plot} plot=${{
         title: `Distribution of ${value.index}`, x: { what: value.index, unit: value.unit }, curves: [],

@@ -2,12 +2,12 @@
 // whether it may vary; and the best values of what may.
 
 import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { layoutsWith, numbersOf, selectedElement } from "../library.js";
+import { isSearched, layoutsWith, numbersOf, selectedElement } from "../library.js";
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { answerOf, bestOf, goalOf, unitKey } from "../questions.js";
+import { answerOf, bestOf, goalOf, isFitting, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
 import { STEPS, brief, completed, positionOf, printed, quantity, symbolParts, takenApart, valueAt }
   from "../state/scale.js";
@@ -76,6 +76,7 @@ function FindBest({ store, api }) {
   const [told, setTold] = useState(/** @type {{text: any, of: Document | null}} */ (nothing));
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
+  const isMain = !isSearched(state, layout) && !isFitting(state);
   return html`<form class="optimise" onSubmit=${formHandler(async (_, { submitter }) => {
     if (!goal || !method) return;
     const all = submitter?.getAttribute("value") === "all";
@@ -87,7 +88,8 @@ function FindBest({ store, api }) {
   })}>
     <div class="head"><h2 id="values-title">Values</h2>
       <button value="all" disabled=${!goal || !method}>All layouts</button>
-      <button class="main" id="find-best" disabled=${!goal || !method}>Find best <kbd>O</kbd></button></div>
+      <button class=${isMain ? "main" : ""} id="find-best" disabled=${!goal || !method}>
+        Find best <kbd>O</kbd></button></div>
     <p role="status">${told.of === state.history.present && told.text}</p>
   </form>`;
 }

@@ -7,7 +7,7 @@ import { SearchForm, SearchResult, searchBody } from "./search.js";
 import { SweepResult, sweepTitle } from "./sweep.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { placed, printed, quantity, rounded, takenApart } from "../state/scale.js";
+import { placed, printed, quantity, rounded, scaled, takenApart, unitFor } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { searchedLayouts } from "../library.js";
@@ -127,19 +127,29 @@ const rowsOf = (result) => result.rows ?? result.designs ?? (Array.isArray(resul
 /** @param {{store: Store, api: Api, job: Job}} props */
 function RunResult({ store, api, job }) {
   const rows = rowsOf(job.result);
+  const { about } = store.get();
+  /** @param {any} row */
+  const unitOf = ({ index, unit = "" }) =>
+    unitFor(about, rows.filter((row) => row.index === index).map(({ value }) => value), unit);
   const many = 60;
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
   <${Table} label="Results" heads=${["layout", "index", "method", "value", "better by", ""]}>
     ${rows.slice(0, many).map((row, i) => html`<tr key=${i}>
       <td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td>
       <td class="number">${!isOk(row.status) && html`<div class="doubt">${String(row.status).split(": ")[0]}</div>`}
-        ${placed(row.value, row.decimals)} <span class="unit">${printed(row.unit ?? "")}</span></td>
+        ${writtenIn(row, unitOf(row))}</td>
       <td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
       <td>${Object.keys(row.parameters ?? {}).length > 0 && html`<${Take} store=${store} design=${row}>Take<//>`}</td>
     </tr>`)}
   <//>
   ${rows.length > many && html`<p class="quiet">${rows.length} rows in all: they are in summary.csv.</p>`}
   <${Files} store=${store} api=${api} job=${job} />`;
+}
+
+/** @param {any} row @param {import("../state/scale.js").WrittenUnit} unit */
+function writtenIn(row, { unit, factor }) {
+  const { value, decimals } = scaled(row, factor);
+  return html`${placed(value, decimals)} <span class="unit">${printed(unit)}</span>`;
 }
 
 /** The numbers that can be swept: elements, and then what else the study has. @param {State} state

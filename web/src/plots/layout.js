@@ -7,9 +7,9 @@ import { axisTitle, linearTicks, logTicks, roundStep, shortUnit, tickTexts } fro
  * @typedef {{what: string, unit: string, size?: number, log?: boolean, from?: number, to?: number, zero?: boolean,
  * padded?: boolean, ticks?: number[]}} Axis */
 /** A curve: its name stands at it, unless it is `unnamed`; `colour` is a token of the style; of a `loose` one only its
- * points are drawn.
+ * points are drawn; a value plus a `turn` is the same one, so that a line leaves at one edge and goes on at the other.
  * @typedef {{name: string, x: number[], y: (number | null)[], colour: string, dash?: boolean, pale?: boolean,
- * strong?: boolean, unnamed?: boolean, loose?: boolean, stale?: boolean}} Curve */
+ * turn?: number, strong?: boolean, unnamed?: boolean, loose?: boolean, stale?: boolean}} Curve */
 /** A point that can be taken: of which curve, what it is called, what is read at it, and what it is.
  * @typedef {{curve: number, x: number, y: number, label: string, lines?: string[], big?: boolean, doubtful?: boolean,
  * of: any}} Point */
@@ -49,7 +49,7 @@ export function layoutOf(plot, { width, height, font, zoom = null, before = [] }
   const heading = linesOf(axisTitle(plot.y.what, `m${plot.y.unit}`), Math.floor((width - font) / (font * WIDE)));
   const tops = keysAt(keys, heading[0], width, font);
   const rows = Math.max(tops.rows + 1, heading.length);
-  const box = { left: 0, right: width - font, top: rows * font * 1.5 + 4, bottom: height - font * 3.1 };
+  const box = { left: 0, right: width - font, top: rows * font * 1.5 + font * 0.8, bottom: height - font * 3.1 };
   const many = Math.max(2, Math.floor((box.bottom - box.top) / (font * 2.4)));
   const wide = roundedOut(rise, plot.y, many);
   const y = scaleOf(plot.y, wide, [box.bottom, box.top], many);
@@ -130,9 +130,16 @@ function scaleOf({ what, unit, size = 1, log = false, ticks }, [from, to], [begi
 
 /** The points of a curve in pixels; null where it is broken. @param {Curve} curve @param {Scale} x @param {Scale} y
  * @returns {([number, number] | null)[]} */
-const pixelsOf = (curve, x, y) => curve.x.map((at, i) => {
+const pixelsOf = (curve, x, y) => curve.x.flatMap((at, i) => {
   const value = curve.y[i];
-  return isDrawn(value, y.log) && isDrawn(at, x.log) ? [x.at(at), y.at(value)] : null;
+  if (!isDrawn(value, y.log) || !isDrawn(at, x.log)) return [null];
+  const [before, last] = [curve.x[i - 1], curve.y[i - 1]];
+  /** @type {[number, number]} */
+  const here = [x.at(at), y.at(value)];
+  if (!curve.turn || typeof last !== "number" || Math.abs(value - last) <= curve.turn / 2) return [here];
+  const edge = (last > value ? 1 : -1) * (curve.turn / 2);
+  const cut = x.at(before) + ((edge - last) / (value + 2 * edge - last)) * (here[0] - x.at(before));
+  return [[cut, y.at(edge)], null, [cut, y.at(-edge)], here];
 });
 
 /** @param {([number, number] | null)[]} pixels */

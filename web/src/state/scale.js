@@ -114,6 +114,29 @@ export function symbolParts(name) {
   return letter ? [letter, after ?? close] : [name, ""];
 }
 
+/** A unit in which values are written: they times `factor`. @typedef {{unit: string, factor: number}} WrittenUnit */
+
+/** The unit that suits the middle one of some values in an SI unit, by the table of the library.
+ * @param {any} about @param {unknown[]} values @param {string} unit @returns {WrittenUnit} */
+export function unitFor(about, values, unit) {
+  const sizes = values.filter((value) => typeof value === "number" && Number.isFinite(value) && value !== 0)
+    .map((value) => Math.abs(/** @type {number} */ (value))).toSorted((one, other) => one - other);
+  const [low, high] = [sizes[(sizes.length - 1) >> 1], sizes[sizes.length >> 1]];
+  const size = sizes.length === 0 ? 1 : Number(((low + high) / 2).toPrecision(4));
+  /** @type {(WrittenUnit & {least: number, most: number})[]} */
+  const choices = own(about?.units, unit) ?? [];
+  return choices.find(({ least, most }) => size >= least && size < most) ?? { unit, factor: 1 };
+}
+
+/** A result in the unit in which it is written. @template {{value?: any, standard_error?: any, decimals?: any}} Result
+ * @param {Result} result @param {number} factor @returns {Result} */
+export const scaled = (result, factor) => (factor === 1 ? result : { ...result, value: times(result.value, factor),
+  standard_error: times(result.standard_error, factor),
+  decimals: typeof result.decimals === "number" ? result.decimals - Math.round(Math.log10(factor)) : result.decimals });
+
+/** A number times a factor; what is none stays. @param {any} value @param {number} factor */
+export const times = (value, factor) => (typeof value === "number" ? value * factor : value);
+
 /** What a number is, with its unit in brackets if it has one.
  * @param {string} what @param {string | null | undefined} unit */
 export const withUnit = (what, unit) => (unit ? `${what} [${printed(unit)}]` : what);

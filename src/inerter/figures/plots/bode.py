@@ -7,12 +7,15 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_curve_legend, axes_pair
 from inerter.figures.plots.responses import Designs, Response, response_curves
 from inerter.figures.style import log_axis, style_context
+
+Array = NDArray[np.float64]
+_HALF_TURN = 180.0  # [deg]
 
 
 def plot_bode(
@@ -22,6 +25,8 @@ def plot_bode(
 
     `designs` is one vehicle or several by their names; `response` an index, whose outputs are drawn without weights
     over its excitation, or the names of an input and an output of `state_space`. A road is an input by its velocity.
+    The phase is within 180 degrees of zero, also where delays between axles turn it many times: a line that leaves at
+    one edge continues at the other.
 
     Raises `DesignError` for a design with free values, or a response to several independent sources, as of two tracks
     with a coherence; and what `state_space` raises for unknown names.
@@ -38,7 +43,7 @@ def plot_bode(
         curves = list(response_curves(designs, response, frequency))
         for curve in curves:
             upper.plot(curve.frequency, np.abs(curve.value), **curve.look)
-            lower.plot(curve.frequency, np.unwrap(np.angle(curve.value)) * 180.0 / np.pi, **curve.look)
+            lower.plot(*_wrapped_phase(curve.frequency, curve.value), **curve.look)
         upper.set(ylabel=curves[0].gain_label)
         lower.set(xlabel=axis_label("Frequency", "Hz"), ylabel=axis_label("Phase", "deg"))
         for ax in (upper, lower):
@@ -48,6 +53,19 @@ def plot_bode(
         lower.yaxis.set_major_locator(_degrees(lower))
         add_curve_legend(upper, len(curves))
     return upper, lower
+
+
+def _wrapped_phase(frequency: Array, value: NDArray[np.complex128]) -> tuple[Array, Array]:
+    """Frequencies and phases [deg] from -180 to 180, with the points where a line leaves, breaks, and continues."""
+    phase = np.angle(value, deg=True)
+    turns = np.flatnonzero(np.abs(np.diff(phase)) > _HALF_TURN)
+    before, after = phase[turns], phase[turns + 1]
+    edge = np.where(before > after, _HALF_TURN, -_HALF_TURN)
+    share = (edge - before) / (after + 2.0 * edge - before)
+    at = frequency[turns] + share * (frequency[turns + 1] - frequency[turns])
+    places = np.repeat(turns + 1, 3)
+    edges = np.column_stack([edge, np.full_like(edge, np.nan), -edge]).ravel()
+    return np.insert(frequency, places, np.repeat(at, 3)), np.insert(phase, places, edges)
 
 
 def _degrees(ax: Axes) -> Any:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import threading
 import time
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from app.conftest import DOCUMENT, ask, changed
@@ -18,6 +20,7 @@ from inerter.app import searches
 from inerter.app.documents import study_from
 from inerter.app.jobs import ENDED
 from inerter.files.study import search_parts
+from inerter.files.study.search_parts import NetworkFrontPart, RealPart
 from inerter.network_search import plan as network_search
 
 FREE = {
@@ -138,6 +141,7 @@ def test_a_search_that_was_stopped_keeps_its_ranking_and_continues(
     while not _ranking(before := client.get(f"/api/work/{number}").json()):
         assert before["state"] not in ENDED, before
     assert _searched(before) == len(ranked) == len(tried) < before["found"]["networks"]
+    assert re.fullmatch(r"\d+ of \d+ networks optimised for J1", before["told"])
     refused = client.post(f"/api/work/{number}/resume")
     assert refused.status_code == 400
     assert "running" in refused.json()["sentence"]
@@ -184,3 +188,19 @@ def test_a_free_network_is_no_problem_of_a_study_and_named_where_designs_are_ask
     assert "Search" in refused["problems"][0]["hint"]
     layouts = ask(client, "study/parts", study=SEARCHED)["layouts"]
     assert {name: row["free_networks"] for name, row in layouts.items()} == {"S1": [], "S3": [], "S9": ["any"]}
+
+
+@pytest.mark.parametrize(
+    ("part", "told"),
+    [
+        (None, "0 of 1 networks optimised for J1 and J3 each"),
+        (NetworkFrontPart("S9", 1, "b - c"), "networks between the best for J1 and J3: b - c is done"),
+        (RealPart("S9", "J3", "expected-value", ""), "with real inerters, J3 by simulation: the baseline is done"),
+    ],
+)
+def test_the_progress_of_a_search_is_told_in_plain_words(part: Any, told: str) -> None:
+    plan: Any = SimpleNamespace(topologies=[None])
+    ranking = searches._Ranking(
+        {}, cast("Any", None), {("S9", "J1"): plan, ("S9", "J3"): plan}, n_searched=2 if part else 0
+    )
+    assert ranking.progress(None if part is None else cast("Any", SimpleNamespace(part=part))) == told

@@ -96,9 +96,7 @@ def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     stale.wait_for()
 
 
-def test_windows_that_open_at_once_all_begin_at_the_best(
-    served: Served, visitors: Callable[..., Visitor]
-) -> None:
+def test_windows_that_open_at_once_all_begin_at_the_best(served: Served, visitors: Callable[..., Visitor]) -> None:
     """None of them outdates the question of another one, however late it is answered."""
     windows = [visitors(served) for _ in range(3)]
     for window in windows:

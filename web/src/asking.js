@@ -46,6 +46,10 @@ export function keepAsking(store, api, client, found = async () => {}) {
   /** When the newest question of a panel that waits came up. @type {Map<string, {key: string, at: number}>} */
   const raised = new Map();
 
+  /** The panels that are looked at again: a single timer for each, however often its question changes meanwhile.
+   * @type {Set<string>} */
+  const resting = new Set();
+
   /** Whether a question has been the same for as long as it must; the first of a panel need not.
    * @param {import("./questions.js").Question} question @param {State} state */
   function rests({ panel, key, rest = 0 }, { answers }) {
@@ -53,7 +57,13 @@ export function keepAsking(store, api, client, found = async () => {}) {
     const now = Date.now();
     if (raised.get(panel)?.key !== key) raised.set(panel, { key, at: now });
     const left = rest - (now - (raised.get(panel)?.at ?? now));
-    if (left > 0) setTimeout(schedule, left);
+    if (left > 0 && !resting.has(panel)) {
+      resting.add(panel);
+      setTimeout(() => {
+        resting.delete(panel);
+        schedule();
+      }, left);
+    }
     return left <= 0;
   }
 

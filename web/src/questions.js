@@ -109,16 +109,16 @@ const ROWS = [
     return asked.designs.length > 0 ? [ofDesigns("decision", asked)] : [];
   },
   (state, document) => {
-    const asked = about(state, document);
+    const asked = { ...about(state, document), ...drawn(state) };
     return state.view.tab === "response" && asked.designs.length > 0 ? [ofDesigns("response", asked)] : [];
   },
-  (state) => (state.view.tab === "response" ? ghostsOf(state).map(ghostly) : []),
+  (state) => (state.view.tab === "response" ? ghostsOf(state).map((choice) => ghostly(state, choice)) : []),
   (state, document) => {
     const { seconds, seed, output } = state.view;
     return isSearched(state, document.layout) ? [] : [
       { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed, output }),
         rest: 300 },
-      ofDesigns("mechanism", presentDesign(document)),
+      { ...ofDesigns("mechanism", presentDesign(document)), rest: 300 },
     ];
   },
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
@@ -143,9 +143,21 @@ export function ghostsOf({ view, history: { present } }) {
 /** The panel of such a design, whose answers are kept by it. @param {string} key */
 export const ghostPanel = (key) => `response of ${key}`;
 
-/** @param {Choice} choice @returns {Row} */
-const ghostly = ({ key, study, design }) =>
-  ({ panel: ghostPanel(key), path: "panel/response", ofDesigns: true, body: { study, designs: [design] } });
+/** @param {State} state @param {Choice} choice @returns {Row} */
+const ghostly = (state, { key, study, design }) => ({ panel: ghostPanel(key), path: "panel/response", ofDesigns: true,
+  body: { study, designs: [design], ...drawn(state) } });
+
+/** The index whose frequency response is drawn. @param {State} state @returns {string | undefined} */
+export function drawnIndex({ view, history }) {
+  const indices = indicesIn(history.present.study);
+  return indices.includes(view.response) ? view.response : indices[0];
+}
+
+/** What is asked of responses: those of the index that is drawn. @param {State} state */
+function drawn(state) {
+  const index = drawnIndex(state);
+  return index === undefined ? {} : { indices: [index] };
+}
 
 /** A question of a panel about designs. @param {string} panel @param {any} body @returns {Row} */
 const ofDesigns = (panel, body) => ({ panel, path: `panel/${panel}`, ofDesigns: true, body });
@@ -232,12 +244,12 @@ function effortOf(state, scattering) {
   };
 }
 
-/** What is asked for a table of a panel, whether it is shown or not: of all outputs. @param {State} state
+/** What is asked for a table of a panel, whether it is shown or not: of all outputs and indices. @param {State} state
  * @param {string} panel */
 export function bodyOf(state, panel) {
   if (panel === "indices") return indicesBody(state);
   const asked = questions({ ...state, view: { ...state.view, tab: panel } });
-  const { output, ...body } = asked.find((question) => question.panel === panel)?.body ?? {};
+  const { output, indices, ...body } = asked.find((question) => question.panel === panel)?.body ?? {};
   return body;
 }
 

@@ -286,3 +286,28 @@ test("the parts are those of the study that is open, also of one whose answer is
     assert.deepEqual(Object.keys(store.get().parts?.layouts ?? {}), Object.keys(each.layouts));
   }
 });
+
+test("a drag leaves no timers behind: one for each panel that waits until it rests", async () => {
+  const store = createStore({ ...initial(), about: ABOUT, connection: "ready" });
+  /** @type {any} */
+  const api = { post: async (/** @type {string} */ path, /** @type {any} */ body) =>
+    (path === "study/parts" ? partsOf(body.study) : {}) };
+  store.change({ type: "opened", study: study({}) });
+  keepAsking(store, api, "test");
+  await new Promise((done) => setTimeout(done, 5));
+  const own = globalThis.setTimeout;
+  let timers = 0;
+  /** @type {any} */ (globalThis).setTimeout = (/** @type {any} */ act, /** @type {number} */ after) => {
+    timers += after > 100 ? 1 : 0;
+    return own(act, after);
+  };
+  try {
+    for (let step = 0; step < 50; step += 1) {
+      store.change({ type: "placed", place: ["elements", "k"], value: `${100 + step} kN/m` }, "drag");
+      await new Promise((done) => own(done));
+    }
+  } finally {
+    globalThis.setTimeout = own;
+  }
+  assert.ok(timers > 0 && timers <= 4, `${timers} timers of 50 steps`);
+});

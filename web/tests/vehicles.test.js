@@ -283,3 +283,14 @@ test("a picture of sixty times a second takes a small part of a frame", () => {
   const { user, system } = process.cpuUsage(began);
   assert.ok((user + system) / 1000 / 100 < 8, "[ms] of a processor, whatever else it does");
 });
+
+test("the road has no step at the beginning, when one wheel alone has seen what is between two", () => {
+  for (const { name, made, moments } of ALL.filter(({ name }) => ["half car", "three axles"].includes(name))) {
+    const steepest = (moment) => {
+      const { points } = posed(made, moment).find((shape) => shape.class === "road");
+      return Math.max(...points.slice(1).map(([, y], i) => Math.abs(y - points[i][1])));
+    };
+    const later = Math.max(...moments.slice(moments.length >> 1).map(steepest));
+    assert.ok(steepest(moments[0]) <= 1.2 * later, `${name}: ${steepest(moments[0])} px, later at most ${later}`);
+  }
+});

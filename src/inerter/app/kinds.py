@@ -26,7 +26,7 @@ def tell_compiling(tell: Tell) -> Callable[[str, int, int], None]:
 
     def compiling(title: str, number: int, total: int) -> None:
         with suppress(JobStopped):
-            tell(0, 0, f"compiling kernels {number} of {total}: {title}")
+            tell(0, 0, f"preparing compiled code, once on this computer: {title}, {number} of {total}")
 
     return compiling
 

@@ -15,10 +15,12 @@ from inerter.app.kinds import RESULTS, Tell, tell_compiling
 from inerter.errors import OK, Status, StatusKind, StudyError
 from inerter.files.study.checking import search_plans
 from inerter.files.study.parts import PartResult
-from inerter.files.study.search_parts import GroupResult, RealResult
+from inerter.files.study.search_parts import GroupResult, NetworkFrontPart, RealPart, RealResult
 from inerter.files.study.search_tables import RANKED, improvement, real_gains
 from inerter.files.study.searching import LayoutSearch, StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
+from inerter.formatting import format_list
+from inerter.methods.registry import brief_words_of
 from inerter.network_search.front_results import FrontNetwork
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan
@@ -115,11 +117,16 @@ class _Ranking:
             self.best[group.index] = rank_networks(n for n in (*known, *networks) if isfinite(n.value))[:RANKED]
 
     def progress(self, last: PartResult | None) -> str:
-        """How many networks are searched; then what follows."""
+        """How many networks are optimised, of several indices for all of them; then what was last found."""
+        indices = format_list([index for _, index in self.plans])
         total = self.n_networks * len(self.plans)
-        if self.n_searched < total or last is None:
-            return f"{self.n_searched} of {total} networks"
-        return last.part.name
+        match last.part if last and self.n_searched >= total else None:
+            case NetworkFrontPart(network=network):
+                return f"networks between the best for {indices}: {network} is done"
+            case RealPart(network=network, index=index, method=method):
+                return f"with real inerters, {index} by {brief_words_of(method)}: {network or 'the baseline'} is done"
+        each = " each" if len(self.plans) > 1 else ""
+        return f"{self.n_searched // len(self.plans)} of {self.n_networks} networks optimised for {indices}{each}"
 
     def so_far(self) -> dict[str, Any]:
         """The best of the networks that are searched."""

@@ -7,7 +7,9 @@ import { html, useMemo, useState } from "../parts/html.js";
 import { useShown } from "../parts/shown.js";
 import { Plot } from "../plot.js";
 import { layoutColours, numberedColour } from "../plots/colours.js";
-import { answerOf, baselineOf, choicesOf, ghostPanel, ghostsOf, isRightStill, shownDesigns } from "../questions.js";
+import { answerOf, baselineOf, choicesOf, drawnIndex, ghostPanel, ghostsOf, isRightStill, shownDesigns }
+  from "../questions.js";
+import { indicesIn } from "../state/document.js";
 import { problemsOf } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -29,8 +31,7 @@ export function ResponsePanel({ store }) {
   /** @type {Response[]} */
   const found = value?.curves ?? [];
   const ghosts = ghostsOf(state).map(({ key, kept }) => ({ ...answerOf(state, ghostPanel(key)), kept }));
-  const indices = [...new Set(found.map((each) => each.index))];
-  const [index, setIndex] = useChoice(indices);
+  const index = drawnIndex(state);
   const labels = [...new Set(found.filter((each) => each.index === index).map(({ label }) => label))];
   const [label, setLabel] = useChoice(labels.length > 1 ? [...labels, ALL] : labels);
   const [parts, setParts] = useState(PARTS[0]);
@@ -44,10 +45,11 @@ export function ResponsePanel({ store }) {
     return declared(answers, { index: index ?? "", label: label ?? "", document, stale });
   }, [value, index, label, document, stale.join(), ...ghosts.map((ghost) => ghost.value)]);
   useShown("response", state);
-  const both = plots !== null && parts === "both";
+  const both = parts === "both";
   const current = [shown, ...ghosts].every(({ is }) => is === "current");
   const faulty = problemsOf(state).length > 0;
-  const controls = html`<${Select} aria-label="Index" value=${index} choices=${indices} set=${setIndex} />
+  const controls = html`<${Select} aria-label="Index" value=${index} choices=${indicesIn(document.study)}
+      set=${(/** @type {string} */ response) => store.look({ response })} />
     ${labels.length > 1 && html`<${Select} aria-label="Output" value=${label} set=${setLabel}
       choices=${[...labels.map((each) => [each, wordsOf(each)]), [ALL, "all outputs"]]} />`}
     <div class="segmented" role="group" aria-label="What is drawn">${PARTS.map((each) =>
@@ -58,14 +60,13 @@ export function ResponsePanel({ store }) {
     <${Unchosen} state=${state} designs=${shownDesigns(document)} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
       : sentence}</p>`}
-    ${(plots === null || both) && html`<div class="row plot-tools">${controls}</div>`}
-    ${plots === null && html`<div class="plot empty"></div>`}
-    ${plots && html`<div class=${both ? "plots two" : "plots"}>
-      ${parts !== "phase" && html`<${Plot} key="gain" plot=${plots.gain} current=${current} switches=${["x", "y"]}
-        at=${at} read=${read}>${both ? null : controls}<//>`}
-      ${parts !== "gain" && html`<${Plot} key="phase" plot=${plots.phase} current=${current} switches=${["x"]}
-        at=${at} read=${read}>${parts === "phase" ? controls : null}<//>`}
-    </div>`}
+    ${both && html`<div class="row plot-tools">${controls}</div>`}
+    <div class=${both ? "plots two" : "plots"}>
+      ${parts !== "phase" && html`<${Plot} key="gain" plot=${plots?.gain ?? null} current=${current}
+        switches=${["x", "y"]} at=${at} read=${read}>${both ? null : controls}<//>`}
+      ${parts !== "gain" && html`<${Plot} key="phase" plot=${plots?.phase ?? null} current=${current}
+        switches=${["x"]} at=${at} read=${read}>${parts === "phase" ? controls : null}<//>`}
+    </div>
   </div>`;
 }
 

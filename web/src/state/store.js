@@ -20,10 +20,11 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * seconds since 1970, by the clock of the server; `found`: a result so far */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
  * playing: boolean, compared: string[] | null, against: string, seconds: number, seed: number, output: string,
- * across: boolean, tall: boolean, ghosts: string[]}} View  `index`: by which layouts are ranked, the first of the study
- * where it is none of them; `output`: of the motion, the first where it is empty; `ghosts`: designs whose responses are
- * drawn too; `method`: by which is judged, the quick one where it is empty; `against`: what others are compared with;
- * `across`: the drawing over the width of the page; `tall`: the tabs over the height of it */
+ * across: boolean, tall: boolean, ghosts: string[], response: string}} View  `index`: by which layouts are ranked, the
+ * first of the study where it is none of them; `response`: the index whose response is drawn, likewise; `output`: of
+ * the motion, the first where it is empty; `ghosts`: designs whose responses are drawn too; `method`: by which is
+ * judged, the quick one where it is empty; `against`: what others are compared with; `across`: the drawing over the
+ * width of the page; `tall`: the tabs over the height of it */
 /** @typedef {"connecting" | "compiling" | "ready" | "lost" | "refused"} Connection */
 /** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
@@ -72,7 +73,7 @@ export const initial = () => ({
   typed: null,
   view: {
     path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
-    compared: null, against: "", seconds: 10, seed: 0, output: "", across: false, tall: false, ghosts: [],
+    compared: null, against: "", seconds: 10, seed: 0, output: "", across: false, tall: false, ghosts: [], response: "",
   },
 });
 

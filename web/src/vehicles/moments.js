@@ -4,13 +4,14 @@
 /** @import { Pose } from "./scene.js" */
 
 /** What is at one time: heights and angles, travels of elements [m], states of friction and gaps, how far wheels have
- * turned [rad], which element is selected, and the height of a road so many px before the wheel that it is under [m].
+ * turned [rad], which element is selected, the height of a road so many px before the wheel that it is under [m], and
+ * over how many px a road has been seen since the motion began.
  * @typedef {{pose: Pose, travels: {[mount: string]: {[element: string]: number}},
  * states: {[mount: string]: {[element: string]: string}}, turned: number,
- * road: (name: string, px: number) => number, chosen?: string | null}} Moment */
+ * road: (name: string, px: number) => number, passed: number, chosen?: string | null}} Moment */
 
 /** Of a vehicle that stands still. @type {Moment} */
-export const REST = { pose: {}, travels: {}, states: {}, turned: 0, road: () => 0 };
+export const REST = { pose: {}, travels: {}, states: {}, turned: 0, road: () => 0, passed: Infinity };
 
 const ROLLED = 9; // [rad/s] of a wheel, so that its spokes are seen to turn
 const COLUMN = 200; // [px/s] of a road under one wheel
@@ -44,6 +45,7 @@ export function momentOf(made, motion, at, { speed, shaded = [] }) {
     )])),
     turned: ROLLED * at,
     road: (name, px) => smooth(motion.roads[name] ?? [0], now + px / perSample),
+    passed: now * perSample,
   };
 }
 

@@ -110,8 +110,9 @@ function ground(made, moment, into) {
   }
 }
 
-/** The profile under the wheels of one side: of the nearest of its roads. @param {Layout} made @param {number} y
- * @param {Moment} moment @param {number} from @param {number} to @returns {Point[]} */
+/** The profile under the wheels of one side: of the nearest of its roads, as far as it has been seen.
+ * @param {Layout} made @param {number} y @param {Moment} moment @param {number} from @param {number} to
+ * @returns {Point[]} */
 function profileOf(made, y, moment, from, to) {
   const { tracks, oblique, frontal } = made.scene;
   const own = (oblique ? tracks.filter((track) => Math.abs(track.y - y) < SAME_SIDE) : tracks).map(({ name, x }) =>
@@ -120,7 +121,9 @@ function profileOf(made, y, moment, from, to) {
   /** @type {Point[]} */
   const points = [];
   for (let px = from; px <= to + STEP; px += STEP) {
-    const near = own.reduce((best, each) => (Math.abs(each.at - px) < Math.abs(best.at - px) ? each : best));
+    const seen = own.filter(({ at }) => px >= at - moment.passed);
+    const near = (seen.length > 0 ? seen : own).reduce((best, each) =>
+      (Math.abs(each.at - px) < Math.abs(best.at - px) ? each : best));
     points.push([px, level - made.lift * moment.road(near.name, frontal ? 0 : px - near.at)]);
   }
   return points;

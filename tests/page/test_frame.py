@@ -94,6 +94,7 @@ def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     page.fill("[id='entry vehicle.sprung_mass']", "330 kg")
     page.keyboard.press("Enter")
     stale.wait_for()
+    page.locator(".job").get_by_role("button", name="Forget").click()  # for other tests on this server
 
 
 def test_windows_that_open_at_once_all_begin_at_the_best(served: Served, visitors: Callable[..., Visitor]) -> None:
@@ -182,3 +183,63 @@ def test_a_record_without_a_study_is_shown_beside_a_quarter_car(
     assert visitor.page.locator("#tab-rig").get_attribute("aria-selected") == "true"
     visitor.page.locator(".records .plot .drawn").wait_for()
     visitor.wait_for_text("k | c")  # the device is to join the baseline, which has no inerter yet
+
+
+def test_an_index_has_one_unit_in_all_places(visitor: Visitor) -> None:
+    """That of the library, in the ranking, the comparison and the plot."""
+    page = visitor.page
+    visitor.settled()
+    head = page.locator(".answers thead th", has_text="J5").inner_text()
+    assert head == "J5 [µm/N]"
+    row = page.locator(".answers tr.on td[data-index=J5]")
+    value, text = float(row.get_attribute("data-value")), row.locator(".scatter").inner_text()
+    assert float(text) == pytest.approx(1e6 * value, rel=1e-3)
+    page.get_by_role("tab", name="Compare").click()
+    visitor.drawn()
+    assert page.locator(".compared th", has_text="J5").inner_text().endswith("[µm/N]")
+    cell = page.locator(".compared tr", has_text="J5").locator("td").first
+    assert float(cell.inner_text().split()[0]) == pytest.approx(1e6 * float(cell.get_attribute("data-value")), rel=1e-3)
+    page.get_by_role("tab", name="Response").click()
+    page.get_by_role("tabpanel").get_by_label("Index").select_option("J5")
+    page.locator(".drawn .title", has_text="µm/N").wait_for()
+
+
+def test_the_ranking_draws_the_struts_by_which_layouts_differ(
+    tmp_path: Path, served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    text = (EXAMPLES / "half-car.toml").read_text()
+    front = 'S3 = { front = "k | c_f - b_f", rear = "k | c_r - b_r" }'
+    assert front in text
+    study = tmp_path / "study.toml"
+    study.write_text(text.replace(front, 'S3 = { front = "k | c_f - b_f", rear = "k | c_r" }'))
+    struts = "all => all.map(each => [...each.querySelectorAll('.of')].map(one => one.title))"
+    for path, expected in {
+        study: {"S1": ["front, rear"], "S2": ["front, rear"], "S3": ["front", "rear"]},
+        EXAMPLES / "absorber.toml": {"TMD": [""], "TMDI": ["mount", "ground"]},
+    }.items():
+        window = visitors(served).visit()
+        window.open(path)
+        window.page.wait_for_selector(".notice")
+        window.settled()
+        found = dict(
+            zip(
+                window.page.locator(".answers .pick").evaluate_all("all => all.map(each => each.title)"),
+                window.page.locator(".answers .pick").evaluate_all(struts),
+                strict=True,
+            )
+        )
+        assert found == expected
+
+
+def test_one_button_alone_is_filled(served: Served, visitors: Callable[..., Visitor]) -> None:
+    for name in ("quarter-car", "search_quarter_car"):
+        visitor = visitors(served).visit()
+        visitor.open(EXAMPLES / f"{name}.toml")
+        visitor.page.wait_for_selector(".notice")
+        visitor.settled()
+        for tab in ("response", "work"):
+            visitor.page.click(f"#tab-{tab}")
+            visitor.drawn()
+            assert visitor.page.locator("button.main").all_inner_texts() == [
+                "Find best O" if name == "quarter-car" else "Search for the best network"
+            ]

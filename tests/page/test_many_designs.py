@@ -16,17 +16,22 @@ import inerter as it
 POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
 CELLS = """() => [...document.querySelectorAll(".answers tbody tr")].map(row => [
   row.querySelector(".pick").title,
-  [...row.querySelectorAll("td[data-value]")].map(td => [+td.dataset.value, td.innerText]),
+  [...row.querySelectorAll("td[data-value]")].map(td => [+td.dataset.value, td.innerText,
+    document.querySelectorAll(".answers thead th")[td.cellIndex].innerText]),
   +(row.querySelector("td[data-better]")?.dataset.better ?? NaN),
 ])"""
 CURRENT = """k => document.querySelector(".answers[data-being=current]")
   && document.querySelector("[id='entry elements.k']").title === k"""
 
 
-def _read(text: str) -> float:
-    """The last number of a cell, as it is written."""
+SIZES = {"m/s²": 0, "N": 0, "kN": 3, "mm/N": -3, "µm/N": -6}  # powers of ten of the units of heads
+
+
+def _read(text: str, head: str) -> float:
+    """The last number of a cell, as it is written, in SI."""
     mantissa, power = re.findall(r"(-?[0-9.]+)(?:·10(-?[0-9]+))?", text.translate(POWERS).replace(" %", ""))[-1]
-    return float(f"{mantissa}e{power or 0}")
+    unit = head.partition("[")[2].rstrip("]")
+    return float(f"{mantissa}e{int(power or 0) + SIZES[unit]}")
 
 
 @pytest.mark.timeout(1800)
@@ -69,9 +74,9 @@ def test_every_number_of_random_designs_is_that_of_the_library(visitor: Visitor,
         shown = page.evaluate(CELLS)
         assert sorted(row[0] for row in shown) == sorted(layouts)
         for name, cells, better in shown:
-            assert [value for value, _ in cells] == expected[name], (number, name)
-            for value, text in cells:
-                assert _read(text) in (float(f"{value:.4g}"), float(f"{value:.5g}")), (number, name, text)
+            assert [value for value, *_ in cells] == expected[name], (number, name)
+            for value, text, head in cells:
+                assert _read(text, head) in (float(f"{value:.4g}"), float(f"{value:.5g}")), (number, name, text)
             if name != study.baseline:
                 gain = 100.0 * (1.0 - expected[name][0] / base)
                 assert better == pytest.approx(gain, rel=1e-9, abs=1e-9), (number, name, shown, expected)

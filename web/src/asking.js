@@ -3,7 +3,7 @@
 
 import { Lost, Refusal, postNow } from "./api.js";
 import { questions, soughtOf } from "./questions.js";
-import { settledOn } from "./state/answers.js";
+import { settledOn, shownOf } from "./state/answers.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -52,8 +52,9 @@ export function keepAsking(store, api, client, found = async () => {}) {
 
   /** Whether a question has been the same for as long as it must; the first of a panel need not.
    * @param {import("./questions.js").Question} question @param {State} state */
-  function rests({ panel, key, rest = 0 }, { answers }) {
+  function rests({ panel, key, rest = 0, ofSteps = false }, { answers }) {
     if (rest === 0 || answers[panel] === undefined) return true;
+    if (ofSteps && !shownOf(answers[panel], key).before) return true;
     const now = Date.now();
     if (raised.get(panel)?.key !== key) raised.set(panel, { key, at: now });
     const left = rest - (now - (raised.get(panel)?.at ?? now));

@@ -27,7 +27,7 @@ export const methodChoice = (store) => ({ value: judging(store.get())?.name,
 
 /** A method in words, with its name. @param {Method} method */
 function methodTitle({ name, sees }) {
-  const words = { neither: "without friction and gaps", friction: "with friction",
+  const words = { neither: "no friction or gaps", friction: "with friction",
     both: "with friction and gaps" }[sees] ?? "";
   return `${words || name} (${name.replaceAll("-", " ")})`;
 }

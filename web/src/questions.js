@@ -9,8 +9,9 @@ import { takenApart } from "./state/scale.js";
 /** @import { State, Action } from "./state/store.js" */
 /** @import { Document, Study } from "./state/document.js" */
 /** `ofDesigns`: whether it is about designs, whose values must be chosen first; `learnt` is what else an answer
- * tells; `rest`: how long the state must have been the same before it is asked [ms].
- * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, rest?: number,
+ * tells; `rest`: how long the state must have been the same before it is asked [ms], if only where numbers alone have
+ * changed, `ofSteps`.
+ * @typedef {{panel: string, path: string, body: any, ofDesigns?: boolean, rest?: number, ofSteps?: boolean,
  * learnt?: (value: any) => Action}} Row */
 /** `key`: all that is asked, by which its answer is kept. @typedef {Row & {key: string}} Question */
 
@@ -118,7 +119,7 @@ const ROWS = [
     return isSearched(state, document.layout) ? [] : [
       { ...ofDesigns("history", { ...presentDesign(document), ...beside(document), duration: seconds, seed, output }),
         rest: 300 },
-      { ...ofDesigns("mechanism", presentDesign(document)), rest: 300 },
+      { ...ofDesigns("mechanism", presentDesign(document)), rest: 300, ofSteps: true },
     ];
   },
   (state) => (state.view.tab === "compare" ? comparison(state) : []),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,18 @@ class DesignEstimate:
 
         None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
         """
+        known, found = self._compared.get(id(other), (None, None))
+        if known is not other:
+            found = self._compare(other)
+            self._compared[id(other)] = other, found
+        return found
+
+    @cached_property
+    def _compared(self) -> dict[int, tuple[DesignEstimate, Comparison | None]]:
+        """Comparisons with other estimates, by their identity: an answer needs each of them several times."""
+        return {}
+
+    def _compare(self, other: DesignEstimate) -> Comparison | None:
         if self.design.unchosen or other.design.unchosen:
             return None
         if not np.isfinite([self.estimate.value, other.estimate.value]).all():

@@ -6,7 +6,7 @@ import hashlib
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import isfinite, sqrt
 from typing import Any
 
@@ -21,6 +21,7 @@ from inerter.vehicle.vehicle import Vehicle
 
 Values = Mapping[str, "str | float"]
 _NAME = re.compile(r"'(\w+)'")
+_KEPT = 500  # designs, and digests of problems
 
 
 @dataclass(frozen=True)
@@ -81,9 +82,28 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     return Design(study, name or layout, layout, vehicle.with_values(chosen), chosen, unchosen, all_free)
 
 
+@dataclass(frozen=True, eq=False)
+class _SameStudy:
+    """A study as a key: equal to itself alone, which a study that requests share is."""
+
+    study: Study
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _SameStudy) and self.study is other.study
+
+    def __hash__(self) -> int:
+        return id(self.study)
+
+
 def given_design(study: Study, given: Mapping[str, Any]) -> Design:
     """Design that a request gives by its layout, values and name; raises what `design_of` raises."""
-    return design_of(study, given["layout"], given.get("values") or {}, given.get("name") or "")
+    values = tuple((given.get("values") or {}).items())
+    return _given_design(_SameStudy(study), given["layout"], values, given.get("name") or "")
+
+
+@lru_cache(_KEPT)  # a step of a slider leaves most designs as they were
+def _given_design(of: _SameStudy, layout: str, values: tuple[tuple[str, Any], ...], name: str) -> Design:
+    return design_of(of.study, layout, dict(values), name)
 
 
 def problem_digest(study: Study, layout: str, index: str) -> str:
@@ -91,6 +111,12 @@ def problem_digest(study: Study, layout: str, index: str) -> str:
 
     It depends on vehicle, network, bounds, objective and limits, and not on the names of elements.
     """
+    return _problem_digest(_SameStudy(study), layout, index)
+
+
+@lru_cache(_KEPT)
+def _problem_digest(of: _SameStudy, layout: str, index: str) -> str:
+    study = of.study
     vehicle = study.design(layout)
     if not vehicle.free_values():
         return ""

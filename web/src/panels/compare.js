@@ -26,20 +26,21 @@ export function ComparePanel({ store }) {
   const full = compared.length === MOST;
   const answer = answerOf(state, "compare");
   return html`<div aria-busy=${answer.is === "coming"}>
-    <div class="row" role="group" aria-label="Designs to compare">
-      ${choices.map(({ key, name, kept }) => html`<${Chip} key=${key} on=${keys.includes(key)}
-        disabled=${full && !keys.includes(key)} set=${() => toggle(key)}>
-          ${name}${kept ? html` <span class="quiet">kept</span>` : null}<//>`)}
-    </div>
-    ${compared.length >= FEWEST &&
-    html`<p class="row"><${Select} label="Compared with" value=${keys[0]}
-      choices=${choices.filter(({ key }) => keys.includes(key)).map(({ key, name, kept }) =>
-        [key, kept ? `${name} (kept)` : name])}
-      set=${(/** @type {string} */ against) => store.look({ against })} />
-      ${" "}${full && html`<span class="quiet">Four are the most: leave one out for another.</span>`}</p>`}
-    <${Keep} store=${store} />
+    <div class="row">
+      <div class="row" role="group" aria-label="Designs to compare">
+        ${choices.map(({ key, name, kept }) => html`<${Chip} key=${key} on=${keys.includes(key)}
+          disabled=${full && !keys.includes(key)} set=${() => toggle(key)}>
+            ${name}${kept ? html` <span class="quiet">kept</span>` : null}<//>`)}
+      </div>
+      ${compared.length >= FEWEST &&
+      html`<${Select} label="compared with" value=${keys[0]}
+        choices=${choices.filter(({ key }) => keys.includes(key)).map(({ key, name, kept }) =>
+          [key, kept ? `${name} (kept)` : name])}
+        set=${(/** @type {string} */ against) => store.look({ against })} />
+        ${full && html`<span class="quiet">Four are the most: leave one out for another.</span>`}`}</div>
     ${compared.length < FEWEST ? html`<p class="quiet">Choose two to four of them.</p>`
       : html`<${Comparison} state=${state} answer=${answer} compared=${compared} />`}
+    <${Keep} store=${store} />
   </div>`;
 }
 

@@ -4,8 +4,8 @@ import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } fro
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
-import { brief, printed, symbolParts } from "../state/scale.js";
-import { isFreeNetwork, kindOf, layoutsWith, treeOf, wrongIn } from "../library.js";
+import { brief, briefIn, printed, symbolParts } from "../state/scale.js";
+import { isFreeNetwork, kindOf, layoutsWith, treeOf, unitOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { symbolPath } from "./sketch.js";
@@ -319,7 +319,7 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
       width=${24 + Math.max(valued ? VALUE : 0, 5.2 * shortLabel(one.name).length)} />
     <path class="symbol" d=${symbolPath(kind)} />
     <text x="12" y="2">${free ? shortLabel(one.name) : subscripted(shortLabel(one.name))}</text>
-    ${valued && html`<text class="value" x="12" y="12">${printed(brief(value))}</text>`}
+    ${valued && html`<text class="value" x="12" y="12">${printed(value)}</text>`}
   </g>`;
 }
 
@@ -337,7 +337,9 @@ const isEntrance = (leafPath, path) => leafPath.every((i, level) => i === (path[
 function valueOf(state, name) {
   const { study, values, layout } = state.history.present;
   const entry = own(study.elements, name);
-  return isRange(entry) ? (own(own(values, layout), name) ?? "free") : typeof entry === "string" ? entry : "";
+  const chosen = own(own(values, layout), name);
+  if (isRange(entry)) return chosen === undefined ? "free" : briefIn(state.about, chosen, unitOf(state, name));
+  return typeof entry === "string" ? brief(entry) : "";
 }
 
 /** @param {Path} a @param {Path} b */

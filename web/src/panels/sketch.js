@@ -13,7 +13,8 @@ const SMALL = 30; // [px] wide, where several stand beside each other
 /** A network, and the struts that have it; none where it is that of all.
  * @typedef {{struts: string[], tree: import("../network/algebra.js").Tree | null}} Sketched */
 
-/** What is drawn of each layout: its networks, of several struts those by which layouts differ, equal ones once.
+/** What is drawn of each layout: its networks, equal ones once; of several struts those by which layouts differ, if
+ * each layout has such.
  * @param {State} state @returns {{[layout: string]: Sketched[]}} */
 export function sketchesOf(state) {
   const { layouts = {} } = state.history.present.study;
@@ -24,11 +25,12 @@ export function sketchesOf(state) {
   /** @param {string} layout @param {string} strut */
   const shapeIn = (layout, strut) => shapeOf(state, treeIn(layout, strut));
   const names = Object.keys(layouts);
-  const different = struts.filter((strut) => new Set(names.map((layout) => shapeIn(layout, strut))).size > 1);
+  const differ = struts.filter((strut) => new Set(names.map((layout) => shapeIn(layout, strut))).size > 1);
+  const enough = names.every((layout) => strutsOf(layouts[layout]).some((strut) => differ.includes(strut)));
   return Object.fromEntries(names.map((layout) => {
     const own = strutsOf(layouts[layout]);
     if (own.length === 0) return [layout, [{ struts: [], tree: treeIn(layout, "") }]];
-    const drawn = different.length > 0 ? different.filter((strut) => own.includes(strut)) : own;
+    const drawn = enough ? differ.filter((strut) => own.includes(strut)) : own;
     const shapes = [...new Set(drawn.map((strut) => shapeIn(layout, strut)))];
     return [layout, shapes.map((shape) => {
       const those = drawn.filter((strut) => shapeIn(layout, strut) === shape);

@@ -1,5 +1,6 @@
 // The first screen: begin with a question, with a vehicle, with a file, or with what was open before.
 
+import { Moving } from "../parts/clock.js";
 import { html, useEffect, useState } from "../parts/html.js";
 import { canonical } from "../network/algebra.js";
 import { drawing, pathOf } from "../network/drawing.js";
@@ -76,7 +77,9 @@ export function Start({ store, api }) {
     <section class="panel" aria-labelledby="questions-title" data-keys="Questions">
       <div class="head"><h2 id="questions-title">Begin with a question</h2>
         <small>Each opens complete, and all of it can be changed.</small></div>
-      <div class="inside"><div class="cards" onKeyDown=${walk}>
+      <div class="inside">
+        ${ready && examples.length === 0 && html`<p class="pad"><${Moving} what="Reading the examples" /></p>`}
+        <div class="cards" onKeyDown=${walk}>
         ${cardsOf(examples).map(({ example, heading }) => html`<button type="button" class="card" key=${example.name}
           data-example=${example.name} onClick=${() => begin(example.study)}>
           <${Picture} example=${example} />

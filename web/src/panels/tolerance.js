@@ -7,6 +7,7 @@ import { Moving } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
+import { Name } from "../parts/name.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
 import { shown, times, unitFor, withUnit } from "../state/scale.js";
@@ -36,7 +37,8 @@ export function TolerancePanel({ store, api }) {
       likely. What is empty does not scatter.</p>
     <div class="row spreads">
       ${names.map((name) => html`<label key=${name}><span>
-        ${name} ±</span> <input name=${`spread ${name}`} class="short" type="number" min="0" max="99" step="any"
+        <span class="symbol-name"><${Name} label=${name} /></span> ±</span> <input name=${`spread ${name}`}
+          class="short" type="number" min="0" max="99" step="any"
           defaultValue=${USUAL} /> %</label>`)}</div>
     <div class="row"><${Select} label="Index" name="index" choices=${indexChoices(indices)} />
       ${" "}<button class="edged">Compute</button></div>

@@ -6,10 +6,11 @@ import { isSearched, layoutsWith, numbersOf, selectedElement } from "../library.
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
+import { Name } from "../parts/name.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, bestOf, goalOf, isFitting, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
-import { STEPS, brief, completed, positionOf, printed, quantity, symbolParts, takenApart, valueAt }
+import { STEPS, brief, briefIn, completed, positionOf, printed, quantity, takenApart, valueAt }
   from "../state/scale.js";
 import { optimise } from "../working.js";
 
@@ -227,13 +228,14 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
     <${Bounds} store=${store} amount=${amount} />
     <input id=${`slider ${id}`} type="range" min="0" max=${STEPS} aria-label=${label}
       class=${mark === null ? "" : "marked"} style=${mark === null ? null : { "--best": mark }}
-      title=${`${range.from} to ${range.to}${best === undefined ? "" : `; the best found is ${brief(best)}`}`}
+      title=${`${range.from} to ${range.to}${best === undefined ? "" : `; the best found is ${
+        briefIn(store.get().about, best, unit)}`}`}
       value=${usable ? positionOf(size, lower, upper) : 0} disabled=${!usable} aria-valuetext=${text}
       onInput=${textHandler((position) => usable && slide(valueAt(Number(position), lower, upper)))}
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      names=${names}
+      names=${names} told=${free ? briefIn(store.get().about, text, unit) : undefined}
       drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
         store.dispatch({ type: "rested" })))}
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />
@@ -243,12 +245,6 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
   </div>`;
 }
 
-/** A name; that of an element as a symbol, as in the picture of the vehicle.
- * @param {{label: string, element: boolean}} props */
-function Name({ label, element }) {
-  const [symbol, subscript] = element ? symbolParts(label) : [label, ""];
-  return subscript ? html`${symbol}<sub>${subscript}</sub>` : symbol;
-}
 
 /** What a number is, and its bounds. @param {{store: Store, amount: Amount}} props */
 function Bounds({ store, amount }) {
@@ -303,10 +299,10 @@ function dragged({ currentTarget, clientX: begun, pointerId, button, pointerType
 }
 
 /** A text that is taken over with Enter or on leaving, to where it belonged when it was begun; while nobody is in
- * it, it shows no more digits than fit, and can be dragged.
- * @param {{id: string, label: string, text: string, wrong?: boolean, done: (text: string) => void,
+ * it, it shows what is `told`, with no more digits than fit, and can be dragged.
+ * @param {{id: string, label: string, text: string, told?: string, wrong?: boolean, done: (text: string) => void,
  * names?: {[name: string]: string}, drag?: ((event: PointerEvent) => void) | false}} props */
-export function Entry({ id, label, text, wrong = false, done, drag = false, names }) {
+export function Entry({ id, label, text, told = brief(text), wrong = false, done, drag = false, names }) {
   const [typed, setTyped] = useState(/** @type {{now: string, before: string, done: typeof done} | null} */ (null));
   const [inside, setInside] = useState(false);
   const finish = () => {
@@ -323,7 +319,7 @@ export function Entry({ id, label, text, wrong = false, done, drag = false, name
     setInside(true);
   };
   return html`<input class="entry" id=${id} aria-label=${label} title=${text}
-    value=${typed?.now ?? (inside ? text : printed(brief(text)))}
+    value=${typed?.now ?? (inside ? text : printed(told))}
     aria-invalid=${wrong} autocomplete="off" spellcheck=${false} onPointerDown=${drag}
     onInput=${textHandler((now) => setTyped({ before: text, done, ...typed, now }))} onFocus=${enter}
     onBlur=${() => {

@@ -45,6 +45,6 @@ export function Unchosen({ state, designs }) {
   const listed = found.map(({ name, unchosen }) => `${unchosen.join(", ")} of ${name}`).join("; ");
   return found.length === 0
     ? null
-    : html`<p class="unchosen" role="status">Not chosen yet: ${listed}. The free values are in the middle of their
-        bounds, which says nothing of a layout: press Find best, or choose them.</p>`;
+    : html`<p class="unchosen" role="status">Not chosen yet: ${listed}. They are in the middle of their bounds: press
+        Find best, or choose them.</p>`;
 }

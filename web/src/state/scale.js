@@ -32,6 +32,15 @@ export function brief(text) {
   return long ? `${Number(apart.number.toPrecision(5))} ${apart.unit}`.trim() : text;
 }
 
+/** The same of a value that was found, in the unit that suits it if it stands in the SI unit.
+ * @param {any} about @param {string} text @param {string} unit */
+export function briefIn(about, text, unit) {
+  const apart = takenApart(text);
+  if (apart === null || apart.unit !== unit) return brief(text);
+  const own = unitFor(about, [apart.number], unit);
+  return `${Number((apart.number * own.factor).toPrecision(5))} ${own.unit}`.trim();
+}
+
 /** A number with four digits or fewer, as a person writes it. @param {number} number */
 export const shortest = (number) => String(Number(number.toPrecision(4)));
 
@@ -104,8 +113,9 @@ const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 /** The digits and the minus sign of a number as superscripts. @param {string} text */
 export const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
 
-/** A unit as a person writes it. @param {string} unit */
-export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power));
+/** A unit, or a quantity with one, as a person writes it. @param {string} text */
+export const printed = (text) => text.replace(/(\d)e\+?(-?\d+)/i, (_, last, power) =>
+  `${last}·10${superscript(String(Number(power)))}`).replace(/\^(-?\d+)/g, (_, power) => superscript(power));
 
 /** A symbol and its subscript: of a letter with few others behind it, or with an underscore; of a word there is none.
  * @param {string} name @returns {[string, string]} */

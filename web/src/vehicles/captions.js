@@ -50,7 +50,7 @@ function standing({ scene: { main, column } }, { moment: { pose }, motion }, lar
 /** A length upwards. @param {Layout} made @param {boolean} narrow @returns {Shape[]} */
 function scaleBar({ lift, width }, narrow) {
   const length = BARS.find((each) => (each / 1000) * lift >= SHORTEST) ?? BARS[BARS.length - 1];
-  const [x, y, tall] = [width - 24, narrow ? 96 : 58, (length / 1000) * lift];
+  const [x, y, tall] = [width - 32, narrow ? 96 : 58, (length / 1000) * lift];
   return [
     line([[x - 4, y], [x + 4, y]], "bar"), line([[x, y], [x, y + tall]], "bar"),
     line([[x - 4, y + tall], [x + 4, y + tall]], "bar"),

@@ -48,7 +48,8 @@ function nameBody(made, own, moment, into) {
   };
   const words = of.kind === "table" ? "table" : inWords(of.name);
   const weight = of.mass === null ? "" : massText(of.mass);
-  const fits = 2 * LETTER * Math.max(words.length, weight.length) + 56 < to - from && thick >= 15;
+  const room = Math.min(-from, to); // to either side of the mark of its middle
+  const fits = LETTER * Math.max(words.length, weight.length) + 28 < room && thick >= 15;
   if (fits && of.kind !== "occupant" && !made.scene.oblique) {
     into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
     return;

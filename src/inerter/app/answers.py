@@ -19,7 +19,7 @@ from inerter.errors import DesignError, StudyError
 from inerter.field_metadata import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.study.cases import Case, Outcome, run_case
-from inerter.files.study.responses import responses
+from inerter.files.study.responses import IndexResponse, index_responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
@@ -81,34 +81,32 @@ def response(study: Study, body: Body) -> Answer:
     numbered = {str(number): design for number, design in enumerate(designs)}
     each = replace(study, indices=indices, layouts={n: study.layouts[design.layout] for n, design in numbered.items()})
     found = {Case(n, index): design.values for n, design in numbered.items() for index in indices}
-    data = responses(each, found, phases=True)
+    omega, every = index_responses(each, found)
     curves = [
         {
             "name": design.name,
             "layout": design.layout,
-            "index": index,
+            "index": one.index,
             "title": title,
-            "unit": gains.attrs["units"],
+            "unit": one.unit,
             "label": label,
             "gain": gain,
             "phase": phase,
         }
-        for index in indices
-        if (gains := data.get(f"gain_{index}")) is not None
-        for design, several, angles in zip(designs, gains.values, data[f"phase_{index}"].values, strict=True)
-        for title, label, gain, phase in zip(*_output_titles(data, index), several, angles, strict=True)
+        for one in every
+        for design, several, angles in zip(designs, one.gains, one.phases, strict=True)
+        for title, label, gain, phase in zip(_output_titles(one), one.outputs, several, angles, strict=True)
     ]
-    return {"frequency": data.omega.values / (2.0 * np.pi), "curves": curves}
+    return {"frequency": omega / (2.0 * np.pi), "curves": curves}
 
 
-def _output_titles(data: Any, index: str) -> tuple[list[str], list[str]]:
-    """Titles and labels of the outputs of an index: its response in words, of several outputs that of each."""
-    words, labels = data[f"gain_{index}"].attrs["long_name"], data[f"output_{index}"].values.tolist()
-    if len(labels) == 1:
-        return [words], labels
-    _, per, source = words.partition(" per ")
-    names = [label.replace("_", " ") for label in labels]
-    return [f"{name} per {source}" if per else f"{name}: {words}" for name in names], labels
+def _output_titles(one: IndexResponse) -> list[str]:
+    """Titles of the outputs of an index: its response in words, of several outputs that of each."""
+    if len(one.outputs) == 1:
+        return [one.words]
+    _, per, source = one.words.partition(" per ")
+    names = [label.replace("_", " ") for label in one.outputs]
+    return [f"{name} per {source}" if per else f"{name}: {one.words}" for name in names]
 
 
 def mechanism(study: Study, body: Body) -> Answer:

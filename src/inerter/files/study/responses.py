@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,12 +25,31 @@ from inerter.vehicle.mechanism import Mechanism, OutputWeight
 Array = NDArray[np.float64]
 
 
-def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: bool = False) -> xr.Dataset:
-    """Gain of every weighted output of every index over frequency, for the parameters that were found for each case.
+@dataclass(frozen=True)
+class IndexResponse:
+    """Responses of the outputs of an index, for each layout, over the frequencies that all indices share."""
 
-    With `phases` also `phase_INDEX` [rad], from -pi to pi; nan where several sources excite, whose gain is a root of a
-    sum of squares.
-    """
+    index: str
+    outputs: list[str]
+    gains: Array  # layout, output, frequency
+    phases: Array  # [rad], from -pi to pi; nan where several sources excite, whose gain is a root of a sum of squares
+    unit: str
+    words: str
+
+
+def responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> xr.Dataset:
+    """Gain of every weighted output of every index over frequency, for the parameters that were found for each case."""
+    omega, every = index_responses(study, found)
+    data = xr.Dataset(coords={"omega": ("omega", omega, {"units": "rad/s", "long_name": "angular frequency"})})
+    for one in every:
+        attributes = {"units": one.unit, "long_name": one.words}
+        data[f"gain_{one.index}"] = (("layout", f"output_{one.index}", "omega"), one.gains, attributes)
+        data = data.assign_coords({f"output_{one.index}": one.outputs})
+    return data
+
+
+def index_responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> tuple[Array, list[IndexResponse]]:
+    """Angular frequencies [rad/s], and the responses of each index that some layout has, for the parameters found."""
     designs = {
         (case.layout, case.index): study.design(case.layout).with_values(values) for case, values in found.items()
     }
@@ -44,7 +64,7 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: b
             if all(map(is_blind, study.methods)):
                 raise
     omega = resonant_range([system.A for _, system in systems.values()])
-    data = xr.Dataset(coords={"omega": ("omega", omega, {"units": "rad/s", "long_name": "angular frequency"})})
+    every = []
     for index in study.indices:
         mine = {layout: entry for (layout, i), entry in systems.items() if i == index}
         if not mine:
@@ -60,21 +80,14 @@ def responses(study: Study, found: Mapping[Case, Mapping[str, float]], phases: b
             together = sizes[:, :, 0] if sizes.shape[2] == 1 else np.linalg.norm(sizes, axis=2)  # over all sources
             number = list(study.layouts).index(layout)
             gains[number] = np.abs(weights)[:, None] * together.T
-            if phases and sizes.shape[2] == 1:
+            if sizes.shape[2] == 1:
                 angles[number] = np.angle(response[:, :, 0] * np.sign(weights)).T
         mechanism = designs[next(iter(mine)), index].mechanism()
-        attributes = {
-            "units": gain_unit(definition.unit, source_unit(mechanism, definition)),
-            "long_name": _words(study, index),
-        }
-        data[f"gain_{index}"] = (("layout", f"output_{index}", "omega"), gains, attributes)
-        if phases:
-            named = {"units": "rad", "long_name": f"phase of {_words(study, index)}"}
-            data[f"phase_{index}"] = (("layout", f"output_{index}", "omega"), angles, named)
+        unit = gain_unit(definition.unit, source_unit(mechanism, definition))
         units = [unit_of(mechanism, [o.output]) for o in definition.outputs]
         names = [_output_label(o, own, definition.unit) for o, own in zip(definition.outputs, units, strict=True)]
-        data = data.assign_coords({f"output_{index}": names})
-    return data
+        every.append(IndexResponse(index, names, gains, angles, unit, _words(study, index)))
+    return omega, every
 
 
 def gain_unit(unit: str, per: str) -> str:

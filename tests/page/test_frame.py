@@ -202,6 +202,8 @@ def test_an_index_has_one_unit_in_all_places(visitor: Visitor) -> None:
     page.get_by_role("tab", name="Response").click()
     page.get_by_role("tabpanel").get_by_label("Index").select_option("J5")
     page.locator(".drawn .title", has_text="µm/N").wait_for()
+    page.get_by_role("button", name="Table", exact=True).click()
+    page.locator(".plot-table th", has_text="µm/N").first.wait_for()
 
 
 def test_the_ranking_draws_the_struts_by_which_layouts_differ(

@@ -59,7 +59,7 @@ export function Plot({ plot, current = true, children, switches = [], cursor = n
       <${SaveMenu} plot=${declared} table=${table} current=${current} drawn=${drawn} shown=${!asTable} />
     </div></div>
     <div class="plot-area" ref=${place}>
-      ${asTable && html`<${NumberTable} plot=${declared} table=${table} />`}
+      ${asTable && html`<${NumberTable} plot=${declared} laid=${laid} table=${table} />`}
       ${!asTable && laid && html`<${Drawn} plot=${declared} laid=${laid} svg=${drawn} picked=${picked} look=${look}
           take=${take}><${Reading} ...${reading} /><//>
         ${!hasPoints && html`<${Reader} ...${reading} />`}`}
@@ -388,9 +388,14 @@ function zoomedBy(key, { x, box }, at) {
 
 const ROWS = 100; // of a table that is looked at
 
-/** @param {{plot: Declaration, table?: Numbers}} props */
-function NumberTable({ plot, table }) {
-  const { heads, rows, every } = thinned(table ?? tableOf(plot), ROWS);
+/** The plot with the units that stand at its axes.
+ * @param {Declaration} plot @param {Layout} laid @returns {Declaration} */
+const inUnitsOf = (plot, { x, y }) => ({ ...plot, x: { ...plot.x, unit: x.unit, size: x.size },
+  y: { ...plot.y, unit: y.unit, size: y.size } });
+
+/** @param {{plot: Declaration, laid: Layout | null, table?: Numbers}} props */
+function NumberTable({ plot, laid, table }) {
+  const { heads, rows, every } = thinned(table ?? tableOf(laid ? inUnitsOf(plot, laid) : plot), ROWS);
   return html`<div class="plot-table"><${Table} label=${`${plot.title}, numbers`} heads=${heads}>
       ${rows.map((row, i) => html`<tr key=${i}>${row.map((value) => html`<td class="number">
         ${typeof value === "string" ? value : shown(value)}</td>`)}</tr>`)}<//>

@@ -113,9 +113,8 @@ const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 /** The digits and the minus sign of a number as superscripts. @param {string} text */
 export const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
 
-/** A unit, or a quantity with one, as a person writes it. @param {string} text */
-export const printed = (text) => text.replace(/(\d)e\+?(-?\d+)/i, (_, last, power) =>
-  `${last}·10${superscript(String(Number(power)))}`).replace(/\^(-?\d+)/g, (_, power) => superscript(power));
+/** A unit as a person writes it. @param {string} unit */
+export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power));
 
 /** A symbol and its subscript: of a letter with few others behind it, or with an underscore; of a word there is none.
  * @param {string} name @returns {[string, string]} */

@@ -118,6 +118,54 @@ def test_friction_behind_a_spring_is_not_known_to_three_per_cent(road, car, inne
     assert judged(it.QuarterCar(*car, Spring(k) | Damper(c) | Spring(ks) - Friction(f)), [index]) == [False]
 
 
+def wheel_acceleration(road):
+    return it.RandomResponse({"unsprung_acceleration": 1.0}, road)
+
+
+FORCED = {  # road; masses and tyre; spring and damper, and beside them inertance, spring and friction
+    "spring 1": (
+        (1.507e-6, 12.22),
+        (194.7, 24.85, 216.1e3),
+        Spring(30630.0) | Damper(608.1, "c"),
+        None,
+        70280.0,
+        88.51,
+    ),
+    "spring 2": ((1.058e-6, 12.71), (442.8, 20.75, 131.3e3), Spring(25330.0) | Damper(3715.0, "c"), None, 59e3, 17.6),
+    "inerter 1": (
+        (7.957e-7, 13.14),
+        (340.0, 36.0, 131.9e3),
+        Spring(14410.0) | Damper(1945.0, "c"),
+        18.44,
+        520.3e3,
+        82.49,
+    ),
+    "inerter 2": (
+        (2.204e-6, 20.6),
+        (259.5, 38.59, 147.5e3),
+        Spring(13710.0) | Damper(3756.0, "c"),
+        7.02,
+        411.7e3,
+        32.11,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", sampled(FORCED, ["spring 1"]))
+@pytest.mark.parametrize("index", [wheel_acceleration, it.RideComfort, lambda road: it.ElementVelocity(road, "c")])
+def test_an_output_is_as_far_off_as_what_friction_does_to_it(name, index):
+    """Most of the acceleration of a wheel is there without friction: little of its range, but much of its error."""
+    road, car, plain, b, ks, f = FORCED[name]
+    inner = Friction(f) if b is None else Inerter(b) | Friction(f)
+    quarter = it.QuarterCar(*car, plain | Spring(ks) - inner)
+    found, simulated = (
+        it.evaluate(quarter, index(it.Road(*road)), m) for m in (METHOD, it.ExpectedValue(realisations=16))
+    )
+    error = abs(found.value / simulated.value - 1.0)
+    assert error <= found.error_bound + 4.0 * simulated.standard_error / simulated.value
+    assert found.status.ok == (found.error_bound <= 0.03)
+
+
 def test_many_at_once_have_no_value_that_one_would_not_trust():
     c = Damper(it.free(1e-8, 1.0, name="c"))
     car = paper_quarter_car(Spring(120e3) | c | Inerter(1e-6) - Friction(30.0))

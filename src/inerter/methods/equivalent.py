@@ -95,7 +95,8 @@ class Equivalent:
 
 def poorly_represented(what: str, bound: float) -> Status:
     """Status inaccurate because of `what`, with the error bound if below 1."""
-    most = f", but not {format_share(bound, 2)}" if bound < 1.0 else ""
+    most, promised = (format_share(share, 2) for share in (bound, PROMISE))
+    most = f", but not {most}" if bound < 1.0 and most != promised else ""
     return Status(StatusKind.INACCURATE, f"{what} {POORLY}{most}. Simulate it, as expected-value does")
 
 

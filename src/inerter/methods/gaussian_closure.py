@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -46,6 +46,9 @@ _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 _UNLIKE = (0.03, 0.45)  # error of the index where that is 1 - x, over x and x^2: velocities are not Gaussian then
 _SHARE = (0.06, 0.82)  # the same as a share of the range that the index has over all dampers
 _SPRINGY = 2.2  # times both for a friction that a spring is in series with: it sticks for longer
+_EFFECT = (0.03, 0.9)  # error of what its force does to an output, relative to that, over 1 and x
+_SPRINGY_EFFECT = (0.1, 1.4)  # the same for a friction that a spring is in series with
+_STRONGEST = 8.0  # times x: a share that its force has in an output at most; of 198 simulated ones the most was 2.6
 _SLIPPED = 2.4  # times the share of the time in which the force through a rigid link exceeds friction: the error
 _NEGLIGIBLE = 0.1  # of the promise, up to which the error by one friction is not looked at twice
 _REST = 1.0 - 2.0 / math.pi  # mean square of f sign(v) less its damper's force, over f^2, for a Gaussian v
@@ -65,7 +68,8 @@ class Dampers:
     `error` is the largest relative error of the force of a friction that slips; nan where the covariance was lost.
     `unlike` (designs, frictions) is what the index may be off by, relative to it, because one damper stands for a
     friction; infinite where that sticks for a part of the time, or damps so much that its velocity is not Gaussian.
-    `share` is the same as a share of the range that the index has over all dampers in that place.
+    `share` is the same as a share of the range that the index has over all dampers in that place. `apart` is 1 - d
+    log(force) / d log(damper), from 0 for weak friction to 1; 0 for what sticks.
     """
 
     damping: Array
@@ -73,12 +77,11 @@ class Dampers:
     error: Array  # (designs,)
     unlike: Array
     share: Array
+    apart: Array
 
     def of(self, designs: NDArray[np.intp]) -> Dampers:
         """Equivalent dampers of the designs of these numbers."""
-        return Dampers(
-            self.damping[designs], self.sticks[designs], self.error[designs], self.unlike[designs], self.share[designs]
-        )
+        return Dampers(*(getattr(self, each.name)[designs] for each in fields(self)))
 
     def with_larger_errors(self, factors: Array) -> Dampers:
         """The same dampers where each friction (frictions,) may be off by so many times as much."""
@@ -96,7 +99,7 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
     damping, error = start.copy(), np.full(limits.shape[0], np.inf)
     held = np.zeros(limits.shape, dtype=bool) if held is None else held
     sticks, unlike, left = held.copy(), np.where(held, np.inf, 0.0), np.arange(limits.shape[0])
-    share = np.where(held, 1.0, 0.0)
+    share, apart = np.where(held, 1.0, 0.0), np.zeros(held.shape)
     for step in range(_STEPS):
         if left.size == 0:
             break
@@ -107,20 +110,20 @@ def solve_dampers(speeds: Speeds, limits: Array, start: Array, held: NDArray[np.
         miss = np.where(stuck, 0.0, np.abs(ratio - 1.0)).max(axis=1)
         settled = (miss <= _SETTLED) | np.isnan(miss)
         error[left], sticks[left] = miss, stuck
-        unlike[left], share[left] = _off_by(own, GAUSSIAN.force_ratio * ratio, stuck)
+        apart[left] = np.where(stuck, 0.0, np.clip(1.0 - own, 0.0, 1.0))
+        unlike[left], share[left] = _off_by(apart[left], GAUSSIAN.force_ratio * ratio, stuck)
         factor = np.where(stuck, 1.0, _newton(ratio, slope, stuck, alone=step % 40 >= 15))
         rigid = np.where(stuck & ~held[left], np.clip(own / _RIGID, 1.0, 1.0 / _RIGID), 1.0)
         damping[left] *= np.where(settled[:, None], rigid, factor)
         left = left[~settled]
-    return Dampers(damping, sticks, error, unlike, share)
+    return Dampers(damping, sticks, error, unlike, share, apart)
 
 
-def _off_by(own: Array, ratio: Array, stuck: NDArray[np.bool_]) -> tuple[Array, Array]:
-    """`unlike` and `share` of `Dampers` for each friction, from `own` = d log(force) / d log(damper).
+def _off_by(apart: Array, ratio: Array, stuck: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """`unlike` and `share` of `Dampers` for each friction, from its `apart`.
 
     For one that sticks, from the `ratio` of the r.m.s. force through a rigid link to friction.
     """
-    apart = np.clip(1.0 - own, 0.0, 1.0)
     held = _SLIPPED * scipy.special.erfc(np.sqrt(0.5) / np.maximum(ratio, 1e-6))
     unlike, share = (np.where(stuck, held, apart * (a + b * apart)) for a, b in (_UNLIKE, _SHARE))
     return np.where(unlike <= PROMISE, unlike, np.inf), np.minimum(share, 1.0)
@@ -185,7 +188,7 @@ class Pattern:
 
         if not start.shape[1]:
             none = np.zeros(start.shape, dtype=bool)
-            return Dampers(start, none, np.zeros(points.shape[0]), np.zeros(start.shape), np.zeros(start.shape))
+            return Dampers(start, none, np.zeros(points.shape[0]), *np.zeros((3, *start.shape)))
         found = solve_dampers(speeds, GAUSSIAN.force(self.parts.limits(points)), start, held)
         return found.with_larger_errors(np.where(self.parts.springy, _SPRINGY, 1.0))
 
@@ -202,7 +205,7 @@ class Pattern:
         return found
 
     def carried(self, values: Mapping[str, float]) -> Array:
-        """What part of the force of each friction is in the outputs that are forces beside it (outputs, frictions).
+        """What part of the force of each friction is in each output (outputs, frictions), in the unit of that over N.
 
         `values` are those of all that is free. From the responses H with the damper c of a friction and with 2 c, H':
         since its force is c times the velocity v' across it, the part is |H' - H| / (c |v'|), here in the mean square
@@ -215,8 +218,7 @@ class Pattern:
         omega = lowest * 3.0 ** np.arange(0.0, math.log(highest / lowest, 3.0) + 1.0, 1.0 / _GRID)
         before = frequency_response(close(outputs, values), omega)
         found = np.zeros(self.beside.shape)
-        for i in np.flatnonzero(self.beside.any(axis=0)):
-            name = self.parts.dampers[i]
+        for i, name in enumerate(self.parts.dampers):
             doubled = {**values, name: 2.0 * values[name]}
             force = values[name] * frequency_response(close(velocities, doubled), omega)[:, [i]]
             change = frequency_response(close(outputs, doubled), omega) - before
@@ -226,24 +228,33 @@ class Pattern:
             means = [np.sum(part * density, axis=0), np.sum(part[_GRID:] * density[:-_GRID], axis=0)]
             total = np.sum(density)  # zero across a friction that symmetry keeps from moving
             found[:, i] = np.sqrt(np.max(means, axis=0) / total) if total > 0.0 else 0.0
-        return np.where(self.beside, found, 0.0)
+        return found
 
-    def left_out(self, points: Array, dampers: Dampers) -> Array:
-        """Relative error of the index (designs,) because forces among its outputs contain frictions: dampers do less.
+    def effect(self, dampers: Dampers) -> Array:
+        """Relative error of what the force of each friction does to an output (designs, frictions); 0 if it sticks."""
+        constant, slope = np.where(self.parts.springy, np.array([_SPRINGY_EFFECT]).T, np.array([_EFFECT]).T)
+        return np.where(dampers.sticks, 0.0, constant + slope * dampers.apart)
 
-        The force of a friction with a Gaussian velocity is that of its damper, and a rest that is uncorrelated with it.
+    def off_in_forces(self, points: Array, dampers: Dampers) -> tuple[Array, Array]:
+        """Relative errors of the index (designs,): by what the forces of frictions do to outputs, and by their rests.
+
+        Each force is off by its `effect`. That of a friction with a Gaussian velocity is that of its damper, and a rest
+        that is uncorrelated with it, which counts in the outputs that are forces beside it: dampers do less there.
         """
         rows = self.rows(points, dampers.damping)
-        if not self.beside.any():
-            return np.zeros(rows.shape[0])
         names = tuple(self.index.problem.descriptor.free)
         parts = np.array([self.carried(dict(zip(names, row.tolist(), strict=True))) for row in rows])
         limits = np.where(dampers.sticks, 0.0, self.parts.limits(points))
         limits /= self.index.problem.definition.drive.amplitude_density
         norms = self.index.output_norms(rows)
-        rest = _REST * np.einsum("rof,rf->ro", parts**2, limits**2)
+        moved = GAUSSIAN.force_ratio * np.einsum("rof,rf->ro", parts, limits * self.effect(dampers))
+        rest = _REST * np.einsum("rof,rf->ro", np.where(self.beside, parts, 0.0) ** 2, limits**2)
         with np.errstate(invalid="ignore", divide="ignore"):
-            return _NOT_GAUSSIAN * np.asarray(self.combine(np.sqrt(norms**2 + rest)) / self.combine(norms) - 1.0)
+            by_forces, by_rests = (
+                np.asarray(self.combine(changed) / self.combine(norms) - 1.0)
+                for changed in (norms + moved, np.sqrt(norms**2 + rest))
+            )
+        return by_forces, _NOT_GAUSSIAN * by_rests
 
     def combine(self, norms: Array) -> Array:
         """The index of norms (..., outputs)."""
@@ -365,6 +376,9 @@ class GaussianClosure:
         but not in its error.
 
         An index that vanishes with the slip of a friction that sticks, such as the travel across it, has no bound.
+
+        It is at least what the index changes by if the force of each friction does a little more or less than that of
+        its damper; this is not looked at where it is within `promise` for the strongest of effects.
         """
         free, designs, unlike = self.free, solved.designs, solved.unlike.copy()
         damping = np.full((designs.size, len(free.parts.dampers)), _FIRM * free.parts.scale)
@@ -389,7 +403,13 @@ class GaussianClosure:
             softer = np.where(stuck, damping / _SOFTER, damping)
             held, less = (free.index.output_norms(free.rows(points[designs], one)) for one in (damping, softer))
             unlike[stuck & (free.spread([held, less]) > PROMISE * free.combine(held))[:, None]] = np.inf
-        return np.asarray(unlike.sum(axis=1) + solved.pattern.left_out(points[designs], solved.dampers))
+        off, pattern, dampers = unlike.sum(axis=1), solved.pattern, solved.dampers
+        strongest = np.sum(_STRONGEST * dampers.apart * pattern.effect(dampers), axis=1)
+        seen = np.flatnonzero((off <= PROMISE) & (pattern.beside.any() | (strongest > promise)))
+        if seen.size:
+            by_forces, by_rests = pattern.off_in_forces(points[designs[seen]], dampers.of(seen))
+            off[seen] = np.fmax(off[seen], by_forces) + by_rests
+        return np.asarray(off)
 
     def values(self, points: Array) -> Array:
         """Index at each row of `points`, accurate or not; infinite where unknown."""

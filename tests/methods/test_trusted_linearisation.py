@@ -166,6 +166,25 @@ def test_an_output_is_as_far_off_as_what_friction_does_to_it(name, index):
     assert found.status.ok == (found.error_bound <= 0.03)
 
 
+@pytest.mark.parametrize(
+    ("car", "inner", "force", "output"),
+    [
+        ((223.0, 21.16, 247.1e3), Damper(833.6) | Friction(10.09), (32350.0, 123.7e3, 242.3), "tyre_load"),
+        ((346.6, 37.7, 166.4e3), Inerter(42.32) | Friction(7.282), (29040.0, 858.7e3, 586.1), "ks_force"),
+    ],
+    ids=["two frictions", "beside an inerter"],
+)
+def test_a_peak_counts_the_harmonics_that_friction_forces_add(car, inner, force, output):
+    """The load of a tyre has the whole force of the friction above it, with all harmonics of a square wave."""
+    k, ks, other = force
+    series = inner - Spring(ks, "ks")
+    strut = Spring(k) | series | (Friction(other) if output == "tyre_load" else Damper(other))
+    peak = it.PeakResponse("sprung_force", output, amplitude=416.756 if output == "tyre_load" else 43.546)
+    found, simulated = (it.evaluate(it.QuarterCar(*car, strut), peak, m) for m in (METHOD, it.ExpectedValue()))
+    assert abs(found.value / simulated.value - 1.0) > 0.03
+    assert not found.status.ok
+
+
 def test_many_at_once_have_no_value_that_one_would_not_trust():
     c = Damper(it.free(1e-8, 1.0, name="c"))
     car = paper_quarter_car(Spring(120e3) | c | Inerter(1e-6) - Friction(30.0))

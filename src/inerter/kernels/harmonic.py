@@ -23,6 +23,7 @@ _SETTLED = 1e-11  # change of the forces in a sweep, relative to the largest, pu
 _WIDTH = 1e-6  # relative distance from a resonance at which the gain has fallen a hundredfold if nothing damps it
 FIRST_HARMONIC = 4.0 / np.pi  # amplitude of the first harmonic of a square wave over its height
 _WEAK = 0.6  # first harmonic of friction over the force through it if held, up to which its velocity is near a sine
+_OVERTONES = 31  # largest multiple of a frequency that is looked at
 _LOCK = 1e9  # a damper that holds, over that of reference
 _BEND = 0.1  # of the gain's logarithm between three neighbours: more calls for points between
 
@@ -154,6 +155,46 @@ def balance(work: Array, limit: Array, amplitude: float, reference: float) -> An
         response += G[0, 1 + j] * (extra[j] + (damper[j] - reference) * slipping[j])
         hold[j] = limit[j] * abs(Z[j, j]) / abs(push) if abs(push) > 0.0 else np.inf
     return abs(response) / amplitude, settled
+
+
+@part()
+def overtones(system: Array, omega: float, third: Array, work: Array, limit: Array, reference: float) -> float:
+    """Sum of the squared amplitudes of the response at the odd multiples n of the frequency.
+
+    The force of a friction that slips is a square wave, whose harmonics have the amplitude of the first one over n;
+    those of all frictions are taken in phase. Beyond the last multiple frictions act on the response as they do there.
+    """
+    A, B, C, D, scale = system
+    _, slipping, hold = work
+    count = limit.size
+    damper, column = np.zeros(count), np.empty(count, np.complex128)
+    M, pivots = np.empty((count, count), np.complex128), np.empty(count, np.int64)
+    for j in range(count):
+        damper[j] = _LOCK * reference if hold[j] >= FIRST_HARMONIC else limit[j] / abs(slipping[j]) - reference
+    total, last = 0.0, 0.0
+    for n in range(3, _OVERTONES + 1, 2):
+        if not transfer(A, B, C, D, scale, n * omega, third):
+            return np.inf
+        for j in range(count):
+            for k in range(count):
+                M[j, k] = -third[1 + j, 1 + k] * damper[k]
+            M[j, j] += 1.0
+        if not factor(M, pivots):
+            return np.inf
+        reached = 0.0
+        for j in range(count):
+            if hold[j] >= FIRST_HARMONIC:
+                continue
+            for k in range(count):
+                column[k] = third[1 + k, 1 + j]
+            solve(M, pivots, column)
+            found = third[0, 1 + j]
+            for k in range(count):
+                found += third[0, 1 + k] * damper[k] * column[k]
+            reached += abs(found) * limit[j] / n
+        last = reached**2
+        total += last
+    return total + 0.5 * _OVERTONES * last
 
 
 @part()
@@ -377,21 +418,23 @@ def gains(
     reference: float,
     omegas: Array,
 ) -> Any:
-    """Frequencies, the gain at each, whether all went well, and the largest `distortion` at any of them.
+    """Frequencies, the gain at each, whether all went well, the largest `distortion` and the largest `overtones`.
+
+    Overtones are over the square of the first harmonic.
 
     At `omegas`, or at the `peaks` where none is given, which are not judged. There are none where the system cannot be
     closed.
     """
     A, B, C, D, _, _, good = close(row, descriptor)
     if not good:
-        return np.zeros(0), np.zeros(0), False, np.inf
+        return np.zeros(0), np.zeros(0), False, np.inf, np.inf
     system = (A, B, C, D, balancing_units(A))
     G, third = np.empty((C.shape[0], B.shape[1]), np.complex128), np.empty((C.shape[0], B.shape[1]), np.complex128)
     work = (G, np.empty(limit.size, np.complex128), np.empty(limit.size))
     if omegas.size == 0:
         found, heights, fine = peaks(system, row, limit, dampers, descriptor, amplitude, reference, work)
-        return found, heights, fine, 0.0
-    values, fine, unsure = np.empty(omegas.size), True, 0.0
+        return found, heights, fine, 0.0, 0.0
+    values, fine, unsure, over = np.empty(omegas.size), True, 0.0, 0.0
     for k in range(omegas.size):
         values[k], settled = gain_at(system, omegas[k], limit, amplitude, reference, work)
         fine = fine and settled
@@ -399,4 +442,7 @@ def gains(
             unsure = max(unsure, distortion(work, third, limit, reference, values[k] * amplitude))
         else:
             unsure = np.inf
-    return omegas, values, fine, unsure
+        if np.isfinite(unsure):
+            beside = overtones(system, omegas[k], third, work, limit, reference)
+            over = max(over, beside / (values[k] * amplitude) ** 2)
+    return omegas, values, fine, unsure, over

@@ -36,6 +36,7 @@ _NEAR = 0.5  # of the highest gain: peaks that could be the highest, since an un
 _NUDGE = 1e-6  # relative change of a value for differences
 _DISTORTED = 3.0  # times what the third harmonic may do to the response that this may be off by ...
 _STOPS = 1.2  # ... or less: times its power of 3/4, of friction that stops a slow motion at every turn
+_OVERTONES = 5.0  # times what other harmonics of square waves add to the mean square
 _SEARCH = 1e-6  # relative error of a peak's height by its place, and by the limit of low frequencies
 
 
@@ -83,11 +84,12 @@ class HarmonicBalance:
         rows = np.hstack([points, dampers])[:, self.parts.order(self.descriptor)]
         return np.ascontiguousarray(rows), np.ascontiguousarray(SINUSOIDAL.force(self.parts.limits(points)))
 
-    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool, float]]:
+    def _gains(self, points: Array, omegas: Array = _PEAKS) -> Iterator[tuple[Array, Array, bool, float, float]]:
         """Frequencies and gains at `omegas` or at the peaks, for each row of `points`.
 
         Whether all went well, and what part of the gain may be wrong because frictions are neither so weak nor so
-        strong that one harmonic tells what they do (at peaks that is not asked).
+        strong that one harmonic tells what they do, and what the others add to its mean square (at peaks neither is
+        asked).
         """
         for row, limit in zip(*self._rows(points), strict=True):
             yield kernels.gains(row, limit, self.places, self.arrays, self.amplitude, self.parts.scale, omegas)
@@ -95,7 +97,7 @@ class HarmonicBalance:
     def evaluate_points(self, points: Array, trusted: bool = True) -> Array:
         """The index at each row of `points`; nan where it could not be found, or is not to be `trusted`."""
         result = np.full(points.shape[0], np.nan)
-        for i, (omegas, gains, fine, _) in enumerate(self._gains(points)):
+        for i, (omegas, gains, fine, *_) in enumerate(self._gains(points)):
             if fine and gains.size and (not trusted or self._off_by(points[i], omegas, gains) <= PROMISE):
                 result[i] = self.weight * gains.max() if np.isfinite(gains.max()) or not trusted else np.nan
         return result
@@ -103,8 +105,10 @@ class HarmonicBalance:
     def _off_by(self, point: Array, omegas: Array, gains: Array) -> float:
         """Relative error of the largest gain by taking frictions in one harmonic: at the peaks that could be it."""
         highest = np.maximum(omegas[gains >= _NEAR * gains.max()], _slowest(omegas))
-        third = next(self._gains(point[None], highest))[3]
-        return float(max(_DISTORTED * third, min(_STOPS * third**0.75, PROMISE)))
+        *_, third, over = next(self._gains(point[None], highest))
+        return float(
+            max(_DISTORTED * third, min(_STOPS * third**0.75, PROMISE), math.sqrt(1.0 + _OVERTONES * over) - 1.0)
+        )
 
     def values(self, points: Array) -> Array:
         """Index at each row of `points`, accurate or not; infinite where unknown."""
@@ -121,7 +125,7 @@ class HarmonicBalance:
 
     def peaks(self, point: Array) -> tuple[tuple[GainPeak, ...], bool]:
         """Local maxima of the index's gain, the highest first, and whether all went well."""
-        omegas, gains, fine, _ = next(self._gains(point[None]))
+        omegas, gains, fine, *_ = next(self._gains(point[None]))
         order = np.argsort(-gains, kind="stable")
         return tuple(GainPeak(float(omegas[i]), self.weight * float(gains[i])) for i in order), bool(fine)
 

@@ -59,6 +59,7 @@ class Equivalent:
     forces: tuple[Value, ...]  # of each friction [N], or the free value that has this one, ...
     gains: tuple[float, ...]  # ... times its gain
     springy: tuple[bool, ...]  # which are in series with a spring: see `_behind_springs`
+    undamped: tuple[bool, ...]  # which are in series with springs alone, and with no damper
     design: tuple[str, ...]  # free values of the mechanism that it stands for
     scale: float  # a damping typical of the mechanism [N s/m]
 
@@ -169,6 +170,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     names = tuple(name for name in found if name in moving)
     frictions = [found[name][1] for name in names]
     springy = {id(element) for mount in mechanism.mounts() for element in _behind_springs(mount.network)}
+    undamped = {id(element) for mount in mechanism.mounts() for element in _on_springs_alone(mount.network)}
     return Equivalent(
         mechanism=other,
         dampers=names,
@@ -178,6 +180,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
         forces=tuple(e.value if isinstance(e.value, Free) else e.coefficient for e in frictions),
         gains=tuple(e.gain if isinstance(e.value, Free) else 1.0 for e in frictions),
         springy=tuple(id(element) in springy for element in frictions),
+        undamped=tuple(id(element) in undamped for element in frictions),
         design=tuple(mechanism.free_values()),
         scale=scale,
     )
@@ -198,6 +201,19 @@ def _behind_springs(network: Network) -> Iterator[Element]:
             yield from part.elements()
         else:
             yield from _behind_springs(part)
+
+
+def _on_springs_alone(network: Network) -> Iterator[Element]:
+    """Elements of parts that nothing but springs is in series with: such a spring rings after each reversal."""
+    if not isinstance(network, CombinedNetwork):
+        return
+    roles = [{element.linear for element in part.elements()} for part in network.parts]
+    for i, part in enumerate(network.parts):
+        others = set().union(*(own for j, own in enumerate(roles) if j != i))
+        if isinstance(network, Series) and others == {LinearRole.STIFFNESS}:
+            yield from part.elements()
+        else:
+            yield from _on_springs_alone(part)
 
 
 def slipping_freely(mechanism: Mechanism, definition: IndexDefinition) -> frozenset[str]:

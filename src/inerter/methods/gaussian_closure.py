@@ -46,8 +46,9 @@ _RIGID = 1e-5  # the same for a damper that stands for a rigid link
 _UNLIKE = (0.03, 0.45)  # error of the index where that is 1 - x, over x and x^2: velocities are not Gaussian then
 _SHARE = (0.06, 0.82)  # the same as a share of the range that the index has over all dampers
 _SPRINGY = 2.2  # times both for a friction that a spring is in series with: it sticks for longer
-_EFFECT = (0.03, 0.9)  # error of what its force does to an output, relative to that, over 1 and x
-_SPRINGY_EFFECT = (0.1, 1.4)  # the same for a friction that a spring is in series with
+_EFFECT = (0.02, 0.35)  # error of what its force does to an output, relative to that, over 1 and x
+_UNDAMPED_EFFECT = (0.03, 0.9)  # the same for a friction that springs alone are in series with, ...
+_SPRINGY_EFFECT = (0.1, 1.4)  # ... and where no inerter is beside that either
 _STRONGEST = 8.0  # times x: a share that its force has in an output at most; of 198 simulated ones the most was 2.6
 _SLIPPED = 2.4  # times the share of the time in which the force through a rigid link exceeds friction: the error
 _NEGLIGIBLE = 0.1  # of the promise, up to which the error by one friction is not looked at twice
@@ -232,7 +233,9 @@ class Pattern:
 
     def effect(self, dampers: Dampers) -> Array:
         """Relative error of what the force of each friction does to an output (designs, frictions); 0 if it sticks."""
-        constant, slope = np.where(self.parts.springy, np.array([_SPRINGY_EFFECT]).T, np.array([_EFFECT]).T)
+        kinds = zip(self.parts.springy, self.parts.undamped, strict=True)
+        terms = [_SPRINGY_EFFECT if one else _UNDAMPED_EFFECT if other else _EFFECT for one, other in kinds]
+        constant, slope = np.array(terms).reshape(-1, 2).T
         return np.where(dampers.sticks, 0.0, constant + slope * dampers.apart)
 
     def off_in_forces(self, points: Array, dampers: Dampers) -> tuple[Array, Array]:

@@ -79,7 +79,7 @@ def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> Non
     assert (np.nan if value is None else value) == pytest.approx(shaft.value, rel=1e-9, nan_ok=True)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_other_speeds_are_those_of_the_same_designs(told: dict[str, Any]) -> None:
     study = study_from(FEW)
     assert [one["factor"] for one in told["speeds"]] == [0.8, 1.2]

@@ -19,7 +19,7 @@ LIMIT = 0.93  # of the largest force
 CASES = [(seed, known) for seed in range(12) for known in (False, True)]
 
 
-@pytest.mark.parametrize(("seed", "known"), sampled(CASES, often=[(0, False), (0, True)], kept=1))
+@pytest.mark.parametrize(("seed", "known"), sampled(CASES, often=[(0, True)], kept=0))
 def test_a_force_that_is_cut_off_gives_the_same_device(seed: int, known: bool) -> None:
     """With all samples the friction alone would be wrong by more than its interval says."""
     random = np.random.default_rng([31, seed])

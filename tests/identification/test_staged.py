@@ -31,7 +31,7 @@ def fast():
     return it.VirtualRig(device(113.0), seed=2).run(it.cosine(1e-3, 3.0), 5.0)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_the_papers_experiment():
     """Every value within 2 %, and the backlash as an upper bound; the check agrees in all octaves."""
     found = rig.rig_test_from_json(rig.compute(rig.NAME))

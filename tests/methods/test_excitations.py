@@ -153,7 +153,7 @@ def quick_member(seed):
     raise AssertionError("none of so many is quick")
 
 
-@pytest.mark.parametrize("seed", sampled(range(300, 400), [302, 307], kept=1))
+@pytest.mark.parametrize("seed", sampled(range(300, 400), [302, 307], kept=0))
 def test_simulated_responses_are_the_norms(seed):
     """On the lines of a multisine, with what lies beyond them added; that may be a large part, and is said then."""
     mechanism, index, norm = quick_member(seed)

@@ -327,7 +327,7 @@ def test_a_clutch_has_a_budget():
     assert it.break_even(own, plain, COMFORT, parameter="clutch", method=method).bounds == Clutch.tried
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_an_identified_play_comes_loose_as_often_as_a_gap():
     """In a motion that breaks contact at every turn, whatever it calls that."""
     shaft, b = it.Spring(1e6) | it.Damper(3200.0), it.free(50.0, 200.0, "b")

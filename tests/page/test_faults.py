@@ -273,7 +273,7 @@ MARKUP = "<img src=//evil.example/x onerror=window.struck=1>"
 NAMES = [MARKUP, "\"'><svg onload=window.struck=1>", "\u202etxt.exe", "${window.struck=1}", "javascript:struck=1"]
 
 
-@pytest.mark.parametrize("name", sampled(NAMES, kept=2))
+@pytest.mark.parametrize("name", sampled(NAMES, kept=1))
 def test_markup_in_names_and_units_is_text(visitor: Visitor, tmp_path: Path, name: str) -> None:
     """Titles, layouts, elements, units, designs, files: what is written in them is shown, never run or asked for."""
     page = visitor.page

@@ -215,6 +215,7 @@ def _finished(visitor: Visitor, kind: str, points: int) -> Any:
     return job, json.loads(visitor.served.get(f"work/{known['id']}/result"))
 
 
+@pytest.mark.marathon
 def test_a_front_that_is_drawn_is_that_of_the_job(serve: Callable[..., Served], visitors: Any) -> None:
     visitor = visitors(serve(EXAMPLES / "trade_off.toml")).visit()
     page = visitor.page
@@ -249,6 +250,7 @@ def test_a_front_that_is_drawn_is_that_of_the_job(serve: Callable[..., Served], 
     wait_until(lambda: bool(known := visitor.values().items() & taken.items()) and len(known) > 0)
 
 
+@pytest.mark.marathon
 def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(serve: Callable[..., Served], visitors: Any) -> None:
     visitor = visitors(serve(EXAMPLES / "quarter-car.toml")).visit()  # where there are no other jobs
     page = visitor.page

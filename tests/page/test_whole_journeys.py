@@ -230,7 +230,7 @@ def test_a_search_is_stopped_and_resumed(
 DOCUMENT = "() => sessionStorage.getItem('inerter.document')"
 
 
-@pytest.mark.parametrize("kind", BY_KEYBOARD)
+@pytest.mark.parametrize("kind", sampled(PEOPLE, seldom=PEOPLE))
 def test_thirty_steps_are_undone_and_done_again(
     kind: type[Mouse], nothing: Served, visitors: Callable[..., Visitor]
 ) -> None:

@@ -81,7 +81,7 @@ def test_designs_are_found_from_scratch(row: PrintedRow) -> None:
     sampled(
         product(["S1", "S2-soft", "S3", "S3-hard"], ["J1", "J3", "J5"]),
         [("S1", "J1"), ("S1", "J3"), ("S1", "J5")],
-        kept=1,
+        kept=0,
     ),
 )
 def test_seeds_agree_on_the_half_car(layout: str, index: str) -> None:

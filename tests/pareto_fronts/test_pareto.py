@@ -203,7 +203,7 @@ class Made:
         raise AssertionError
 
 
-@pytest.mark.parametrize("count", sampled([15, 25, 50], [25]))
+@pytest.mark.parametrize("count", sampled([15, 25, 50], [25], [50]))
 def test_a_front_in_pieces_says_where_it_leaps(count):
     car = paper_quarter_car(it.Spring(1e5) | it.Damper(it.free(1e-3, 1.0, "x")))
     front = it.pareto_front(car, [Made(0), Made(1)], NORM, points=count)

@@ -270,7 +270,7 @@ def test_it_survives_being_written_and_is_told(load: Load, tmp_path: Path) -> No
         assert told in page
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_everything_asks_for_it_by_its_name(load: Load, tmp_path: Path) -> None:
     more = """subject_to = { receptance = { at_most = "6 m/N" }, stroke = { at_most = "30 m" } }
 trade_off = ["sway", "felt"]

@@ -80,7 +80,7 @@ def test_a_tolerance_survives_being_written_and_resumed(found: StudyResult, tmp_
     assert (again / "tolerances.csv").read_bytes() == (found.folder / "tolerances.csv").read_bytes()
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_the_design_that_is_best_at_a_quantile(tmp_path: Path) -> None:
     fixed = FREE.replace('b = { from = "1 kg", to = "2000 kg" }', 'b = "30 kg"')
     study = study_of(tmp_path, ASK + 'tolerance = { c = "10 %" }\nquantile = 0.9\nbaseline = "S2"', fixed)

@@ -41,7 +41,7 @@ def test_percentages_stay_short():
     assert format_percent(np.inf) == "+inf %"
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), often=[0, 8, 10], kept=0))
+@pytest.mark.parametrize("seed", sampled(range(12), often=[0, 10], kept=0))
 def test_valid_extremes_run_to_their_end(tmp_path, capsys, seed):
     """Masses, stiffnesses and roads over forty decades: a result of 80 columns or so, or one sentence."""
     rng = np.random.default_rng([seed, 17])

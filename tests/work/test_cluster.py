@@ -176,7 +176,7 @@ def test_whatever_workers_come_and_go(trouble: str, alone: Mapping[str, bytes], 
     assert results(tmp_path / "out") == alone
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(900)
 def test_what_one_executor_began_another_ends(alone: Mapping[str, bytes], tmp_path: Path, there: Cluster) -> None:
     """By own processes and on a cluster until the command is killed, there until the scheduler is, and by processes."""

@@ -80,7 +80,7 @@ def test_two_tyres_on_one_road_are_told_apart():
 UNKNOWN = {
     "a spring to the ground": (
         {"struts": (it.Strut("sky", it.Spring(1e3), {"body": 1.0}, it.GROUND),)},
-        "spring to the ground",
+        "one to the ground",
     ),
     "on dampers alone": ({"strut": it.Damper(1e3)}, "rests on no spring"),
     "in series with a damper": ({"strut": it.Spring(1e4) - it.Damper(1e3)}, "rests on no spring"),
@@ -103,3 +103,10 @@ def test_a_mechanism_without_any_spring_says_that_its_weight_rests_on_none():
     (tyre,) = car.tyres
     with pytest.raises(MechanismError, match="rests on no spring"):
         it.static_tyre_loads(replace(car, tyres=(replace(tyre, network=it.Damper(1e3)),)))
+
+
+def test_a_lever_that_does_not_follow_the_vehicle_is_told():
+    car = it.QuarterCar(300.0, 40.0, 2e5, it.Spring(2e4) | it.Damper(1.5e3)).mechanism()
+    (tyre,) = car.tyres
+    with pytest.raises(MechanismError, match="levers of a strut or tyre do not follow"):
+        it.static_tyre_loads(replace(car, tyres=(replace(tyre, port={"unsprung": 1.07}),)))

@@ -33,6 +33,7 @@ class Records:
             with path.open("wb") as stream:
                 async for chunk in body:
                     stream.write(chunk)
+                    stream.flush()
         except BaseException:
             shutil.rmtree(folder, ignore_errors=True)
             raise

@@ -28,8 +28,8 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
     balance decides, as four wheels do, its springs are taken to be trimmed so that the loads are as even as balance
     allows. Every coordinate that is no angle is taken as vertical.
 
-    Raises `MechanismError` if a mass is free, if a weight rests on nothing or on the ground beside the tyres, or if a
-    tyre would hang.
+    Raises `MechanismError` if a mass is free, if a weight rests on nothing or on the ground beside the tyres, if levers
+    do not follow the vehicle when it is lifted, or if a tyre would hang.
 
     >>> from inerter import Damper, QuarterCar, Spring
     >>> static_tyre_loads(QuarterCar(300.0, 40.0, 2e5, Spring(2e4) | Damper(1.5e3)))
@@ -46,8 +46,9 @@ def static_tyre_loads(vehicle: Vehicle) -> dict[str, float]:
     upright = np.concatenate([weight > 0.0, np.ones(touched.shape[0])])
     if not _is_spanned(np.concatenate([moved, touched]), upright):
         raise MechanismError(
-            "The static tyre loads are not known: a spring to the ground, or to a road without a tyre, "
-            "carries a part of the weight."
+            "The static tyre loads are not known: lifting the vehicle together with its roads strains a spring. Either "
+            "one to the ground, or to a road without a tyre, carries a part of the weight, or the levers of a strut or "
+            "tyre do not follow that motion, as one of 1.1 on a mass does not."
         )
     work = moved.T @ weight
     load, *_ = np.linalg.lstsq(touched.T, work, rcond=_BALANCED)

@@ -166,6 +166,40 @@ def test_an_output_is_as_far_off_as_what_friction_does_to_it(name, index):
     assert found.status.ok == (found.error_bound <= 0.03)
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize(
+    ("car", "strut", "index", "road"),
+    [
+        (
+            (372.8, 45.97, 161.1e3),
+            Spring(13290.0) | Damper(1432.0) | Friction(191.9),
+            it.SuspensionTravel,
+            (5.165e-7, 33.51),
+        ),
+        (
+            (351.3, 39.22, 158e3),
+            Spring(13760.0) | Damper(3915.0) | (Spring(1.396e6) - (Inerter(30.12) | Friction(175.4))),
+            it.SuspensionTravel,
+            (1.52e-6, 11.17),
+        ),
+        (
+            (187.8, 31.23, 122.9e3),
+            Spring(13620.0) | Damper(3991.0) | (Spring(1.98e6) - (Inerter(7.39) | Friction(23.27))),
+            wheel_acceleration,
+            (6.917e-7, 12.93),
+        ),
+    ],
+    ids=["a strong friction", "an inerter with friction behind a spring", "a wheel above it"],
+)
+def test_what_long_waves_carry_is_within_its_bound(car, strut, index, road):
+    """Travels that friction damps, and the acceleration of a wheel, of which a first bound was half the error."""
+    quarter, asked = it.QuarterCar(*car, strut), index(it.Road(*road))
+    found, simulated = (it.evaluate(quarter, asked, m) for m in (METHOD, it.ExpectedValue(realisations=64)))
+    error = abs(found.value / simulated.value - 1.0)
+    assert error > 0.01
+    assert error <= found.error_bound
+
+
 @pytest.mark.parametrize(
     ("car", "inner", "force", "output"),
     [

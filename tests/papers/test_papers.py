@@ -14,7 +14,7 @@ import pytest
 import inerter
 from inerter.cli import commands
 from inerter.cli.main import call
-from inerter.cli.options import Cluster
+from inerter.cli.options import WorkOptions
 from inerter.errors import StudyError
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
@@ -115,7 +115,7 @@ def test_another_paper_needs_no_more_than_its_row(
     monkeypatch.setattr(PAPERS, "_entries", dict(PAPERS))
     PAPERS.add(one)
     folder = tmp_path / "out"
-    told = commands.reproduce(one.name, ("table",), folder, 2, Cluster(), resume=False, force=False, as_json=as_json)
+    told = commands.reproduce(one.name, ("table",), WorkOptions(folder, jobs=2, json=as_json))
     assert exit_code(told) == 0
     assert (folder / "table.csv").read_text() == "7\n"
     said = capsys.readouterr()

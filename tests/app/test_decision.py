@@ -90,7 +90,7 @@ def test_a_method_that_models_friction_says_so_and_the_other_warns(client: TestC
         ask(client, "panel/decision", study=DOCUMENT, values=values, methods=[method]) for method in (BLIND, SEEING)
     )
     assert "Friction f of S3 is neglected by exact norms; expected-value models it." in sentences(blind)
-    assert "friction" not in " ".join(sentences(seeing)).replace("with its friction", "")
+    assert "neglected" not in " ".join(sentences(seeing))
     several = ask(client, "panel/decision", study=DOCUMENT, values=values, methods=[BLIND, SEEING])
     assert {**several, "sequence": 0} == {**seeing, "sequence": 0}
 

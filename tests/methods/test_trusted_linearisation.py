@@ -171,12 +171,6 @@ def test_an_output_is_as_far_off_as_what_friction_does_to_it(name, index):
     ("car", "strut", "index", "road"),
     [
         (
-            (372.8, 45.97, 161.1e3),
-            Spring(13290.0) | Damper(1432.0) | Friction(191.9),
-            it.SuspensionTravel,
-            (5.165e-7, 33.51),
-        ),
-        (
             (351.3, 39.22, 158e3),
             Spring(13760.0) | Damper(3915.0) | (Spring(1.396e6) - (Inerter(30.12) | Friction(175.4))),
             it.SuspensionTravel,
@@ -189,10 +183,10 @@ def test_an_output_is_as_far_off_as_what_friction_does_to_it(name, index):
             (6.917e-7, 12.93),
         ),
     ],
-    ids=["a strong friction", "an inerter with friction behind a spring", "a wheel above it"],
+    ids=["travel", "acceleration of a wheel"],
 )
-def test_what_long_waves_carry_is_within_its_bound(car, strut, index, road):
-    """Travels that friction damps, and the acceleration of a wheel, of which a first bound was half the error."""
+def test_beside_an_inerter_on_springs_errors_are_within_their_bounds(car, strut, index, road):
+    """A travel, and the acceleration of a wheel, of which a first bound was half the error."""
     quarter, asked = it.QuarterCar(*car, strut), index(it.Road(*road))
     found, simulated = (it.evaluate(quarter, asked, m) for m in (METHOD, it.ExpectedValue(realisations=64)))
     error = abs(found.value / simulated.value - 1.0)

@@ -177,6 +177,17 @@ def test_indices_without_conflict_have_a_front_of_one_point():
     assert [len(several) for several in result.by_elements.values()] == [1, 1]
 
 
+def test_fewer_elements_have_their_front_where_more_have_no_conflict():
+    """The bounds are at the best damper and inerter in series for both indices, not at the best damper alone."""
+    narrow = {"springs": None, "dampers": (100.0, 4900.0), "inerters": (200.0, 300.0)}
+    result = it.search(car(2, **narrow), (COMFORT, LOAD), NORM, points=5)
+    alone = it.search(car(1, **narrow), (COMFORT, LOAD), NORM, points=5)
+    assert [one.layout for one in result.front] == ["c1 - b1"]
+    assert len(alone.front) > 2
+    fewer = np.array([one.values for one in result.by_elements[1]])
+    assert fewer == pytest.approx(alone.values, rel=1e-9)
+
+
 def test_networks_without_a_value_say_why():
     result = found(2)
     assert {layout for layout, _ in result.failed} == {"k1", "b1", "k1 | b1", "k1 - b1"}

@@ -233,13 +233,13 @@ def front_waves(
     the work. The generator returns the front.
     """
     ends = _single_optima(plan, searches)
-    scale = _scale(plan, ends) if ends else None
+    fronts = _without_conflict(ends)
+    scale, trading = _scale_where_indices_trade(plan, ends)
     if scale is None:
-        return collect_front(plan.plans, searches, _without_conflict(ends), 0, len(ends) - 1)
-    bounds = {one.topology: scale.excesses(one.ideal[None])[0] for one in ends}
+        return collect_front(plan.plans, searches, fronts, 0, len(ends) - 1)
+    bounds = {one.topology: scale.excesses(one.ideal[None])[0] for one in trading}
     found, reasons, n_searched = _Winners(scale), dict[Topology, str](), 0
-    fronts: dict[int, list[FrontDesign]] = {}
-    for size in sorted({one.topology.size for one in ends}):
+    for size in sorted({one.topology.size for one in trading}):
         left = {one.topology: one for one in ends if one.topology.size == size}
         for one in left.values():
             found.enter(one.topology, one.designs)
@@ -300,6 +300,18 @@ def _all_values(plan: FrontPlan, own: Sequence[FoundNetwork]) -> Array:
         return np.column_stack([np.full(len(own), np.inf) if one is None else one.values(points) for one in over])
     asked = [one.index for one in plan.plans]
     return np.array([[estimate_of(one.design, index, one.plan.method).value for index in asked] for one in own])
+
+
+def _scale_where_indices_trade(
+    plan: FrontPlan, ends: Sequence[_SingleOptima]
+) -> tuple[FrontScale | None, Sequence[_SingleOptima]]:
+    """The networks of up to the most elements among which an index trades for another, and their scale."""
+    for most in sorted({one.topology.size for one in ends}, reverse=True):
+        trading = [one for one in ends if one.topology.size <= most]
+        scale = _scale(plan, trading)
+        if scale is not None:
+            return scale, trading
+    return None, ()
 
 
 def _scale(plan: FrontPlan, ends: Sequence[_SingleOptima]) -> FrontScale | None:

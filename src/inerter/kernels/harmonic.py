@@ -158,6 +158,32 @@ def balance(work: Array, limit: Array, amplitude: float, reference: float) -> An
 
 
 @part()
+def respond_to_frictions(response: Array, damper: Array, output: Array, velocities: Array) -> bool:
+    """Fill the response to a force on each friction, with a `damper` at the place of each; False if it is infinite.
+
+    `response` is that without these dampers: `output` (frictions,) and `velocities` (frictions moved, frictions pushed).
+    """
+    count = damper.size
+    matrix, pivots = np.empty((count, count), np.complex128), np.empty(count, np.int64)
+    column = np.empty(count, np.complex128)
+    for j in range(count):
+        for k in range(count):
+            matrix[j, k] = -response[1 + j, 1 + k] * damper[k]
+        matrix[j, j] += 1.0
+    if not factor(matrix, pivots):
+        return False
+    for j in range(count):
+        for k in range(count):
+            column[k] = response[1 + k, 1 + j]
+        solve(matrix, pivots, column)
+        output[j] = response[0, 1 + j]
+        for k in range(count):
+            output[j] += response[0, 1 + k] * damper[k] * column[k]
+            velocities[k, j] = column[k]
+    return True
+
+
+@part()
 def overtones(system: Array, omega: float, third: Array, work: Array, limit: Array, reference: float) -> float:
     """Sum of the squared amplitudes of the response at the odd multiples n of the frequency.
 
@@ -167,31 +193,20 @@ def overtones(system: Array, omega: float, third: Array, work: Array, limit: Arr
     A, B, C, D, scale = system
     _, slipping, hold = work
     count = limit.size
-    damper, column = np.zeros(count), np.empty(count, np.complex128)
-    M, pivots = np.empty((count, count), np.complex128), np.empty(count, np.int64)
+    damper, output = np.zeros(count), np.empty(count, np.complex128)
+    velocities = np.empty((count, count), np.complex128)
     for j in range(count):
         damper[j] = _LOCK * reference if hold[j] >= FIRST_HARMONIC else limit[j] / abs(slipping[j]) - reference
     total, last = 0.0, 0.0
     for n in range(3, _OVERTONES + 1, 2):
         if not transfer(A, B, C, D, scale, n * omega, third):
             return np.inf
-        for j in range(count):
-            for k in range(count):
-                M[j, k] = -third[1 + j, 1 + k] * damper[k]
-            M[j, j] += 1.0
-        if not factor(M, pivots):
+        if not respond_to_frictions(third, damper, output, velocities):
             return np.inf
         reached = 0.0
         for j in range(count):
-            if hold[j] >= FIRST_HARMONIC:
-                continue
-            for k in range(count):
-                column[k] = third[1 + k, 1 + j]
-            solve(M, pivots, column)
-            found = third[0, 1 + j]
-            for k in range(count):
-                found += third[0, 1 + k] * damper[k] * column[k]
-            reached += abs(found) * limit[j] / n
+            if hold[j] < FIRST_HARMONIC:
+                reached += abs(output[j]) * limit[j] / n
         last = reached**2
         total += last
     return total + 0.5 * _OVERTONES * last
@@ -207,7 +222,7 @@ def distortion(work: Array, third: Array, limit: Array, reference: float, respon
     """
     G, slipping, hold = work
     count = limit.size
-    damper, moved = np.empty(count), np.zeros(count)
+    damper = np.empty(count)
     for j in range(count):
         if hold[j] >= FIRST_HARMONIC:
             damper[j] = _LOCK * reference
@@ -215,32 +230,20 @@ def distortion(work: Array, third: Array, limit: Array, reference: float, respon
             damper[j] = limit[j] / abs(slipping[j]) - reference
         else:
             return np.inf
-    M, column = np.empty((count, count), np.complex128), np.empty(count, np.complex128)
-    pivots, influence = np.empty(count, np.int64), np.zeros(count)
-    for harmonic in (1, 3):
-        response_of = G if harmonic == 1 else third
-        for j in range(count):
-            for k in range(count):
-                M[j, k] = -response_of[1 + j, 1 + k] * damper[k]
-            M[j, j] += 1.0
-        if not factor(M, pivots):
-            return np.inf
-        for j in range(count):
-            if hold[j] >= FIRST_HARMONIC:
-                continue
-            for k in range(count):
-                column[k] = response_of[1 + k, 1 + j]
-            solve(M, pivots, column)
-            total = response_of[0, 1 + j]
-            for k in range(count):
-                total += response_of[0, 1 + k] * damper[k] * column[k]
-                moved[k] += abs(column[k]) * limit[j] / 3.0 if harmonic == 3 else 0.0
-            if harmonic == 1:
-                influence[j] = abs(total) * limit[j] / response
+    reached, output = np.empty(count, np.complex128), np.empty(count, np.complex128)
+    velocities = np.empty((count, count), np.complex128)
+    if not respond_to_frictions(G, damper, reached, velocities):
+        return np.inf
+    if not respond_to_frictions(third, damper, output, velocities):
+        return np.inf
     unsure = 0.0
     for j in range(count):
         if hold[j] < FIRST_HARMONIC:
-            unsure += influence[j] * min(moved[j] / abs(slipping[j]), 1.0)
+            moved = 0.0
+            for k in range(count):
+                if hold[k] < FIRST_HARMONIC:
+                    moved += abs(velocities[j, k]) * limit[k] / 3.0
+            unsure += abs(reached[j]) * limit[j] / response * min(moved / abs(slipping[j]), 1.0)
     return unsure
 
 

@@ -15,6 +15,7 @@ from inerter.formatting import (
     choose_scale,
     decimal_places,
     format_alike,
+    format_count,
     format_entry,
     format_number,
     format_percent,
@@ -296,3 +297,11 @@ def test_numbers_are_formatted_in_one_place():
         for line, text in float_formats(ast.parse(path.read_text(encoding="utf-8")))
     ]
     assert not found, "\n".join(found)
+
+
+def test_one_thing_is_named_in_the_singular() -> None:
+    assert [format_count(number, "break-even values") for number in (0, 1, 2)] == [
+        "0 break-even values",
+        "1 break-even value",
+        "2 break-even values",
+    ]

@@ -361,6 +361,11 @@ def format_list(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
+def format_count(number: int, several: str) -> str:
+    """A number of things that are named in the plural, as in 1 design, 2 designs."""
+    return f"{number} {several.removesuffix('s') if number == 1 else several}"
+
+
 def capital(text: str) -> str:
     """The text as the beginning of a sentence."""
     return text[:1].upper() + text[1:]

@@ -125,7 +125,7 @@ def test_what_comes_after_the_designs_is_told_in_place_of_their_count(capsys: py
         report("drawing the figures")
         time.sleep(0.7)
     lines = capsys.readouterr().err.splitlines()
-    after = lines[lines.index("all 1 designs found") + 1 :]
+    after = lines[lines.index("1 of 1 designs found") + 1 :]
     assert after, lines
     assert all(line.startswith("drawing the figures, ") for line in after), lines
 

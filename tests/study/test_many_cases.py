@@ -297,7 +297,7 @@ def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(
         while len(lines) < 2 and time.monotonic() < until:
             time.sleep(0.05)
             lines += capsys.readouterr().err.splitlines()
-    assert lines[0] == "1000 designs to find, 500 of them done before"
+    assert lines[0] == "designs to find: 1000, 500 of them done before"
     assert re.fullmatch(
         r"600 of 1000 designs found, 2 not ok, 2 a second, \S+ \w+ to \S+ \w+ left, 3 threads at work, 50 s",
         lines[1],

@@ -171,6 +171,7 @@ WRONG = {
     "text": (("1, 2", [1.0]), "got '1, 2'"),
     "texts": ((["1"], [1.0]), "coefficient '1'"),
     "truth": (([True], [1.0]), "coefficient True"),
+    "a set, which has no order": (({1.0, 2.0}, [1.0]), "numerator .* list of real numbers.* got {1.0, 2.0}"),
     "a number": ((3.0, [1.0]), "numerator .* list of real numbers.* got 3.0"),
     "nothing": ((None, [1.0]), "got None"),
     "a matrix": ((np.ones((2, 2)), [1.0]), "coefficient array"),

@@ -110,9 +110,9 @@ def _in_lines(study: _Study) -> Iterator[ProgressCallbacks]:
             study.count(done, total, last, n_failures)
             if last is None and done < total:
                 kept = f", {done} of them done before" if done else ""
-                printer.say(f"{total} {study.items} to find{kept}")
+                printer.say(f"{study.items} to find: {total}{kept}")
             elif last is not None and done == total:
-                printer.say(f"all {total} {study.items} found")
+                printer.say(f"{total} of {total} {study.items} found")
 
         def on_kernel_begin(title: str, number: int, total: int) -> None:
             study.begin_kernel(title, number, total)

@@ -161,7 +161,7 @@ def balance(work: Array, limit: Array, amplitude: float, reference: float) -> An
 def respond_to_frictions(response: Array, damper: Array, output: Array, velocities: Array) -> bool:
     """Fill the response to a force on each friction, with a `damper` at the place of each; False if it is infinite.
 
-    `response` is that without these dampers: `output` (frictions,) and `velocities` (frictions moved, frictions pushed).
+    `response` has none of these dampers: `output` is (frictions,), `velocities` (frictions moved, frictions pushed).
     """
     count = damper.size
     matrix, pivots = np.empty((count, count), np.complex128), np.empty(count, np.int64)

@@ -9,7 +9,7 @@ roots of a polynomial in w^2, both in integers.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -133,7 +133,7 @@ def real_part(n: Polynomial, d: Polynomial) -> Polynomial:
 
 def _coefficients(given: Iterable[float], what: str) -> list[Fraction]:
     expected = f"The {what} of an admittance must be a list of real numbers, highest power of s first"
-    if isinstance(given, str | bytes | dict) or not isinstance(given, Iterable):
+    if isinstance(given, str | bytes | Mapping | Set) or not isinstance(given, Iterable):
         raise SynthesisError(f"{expected}, got {given!r}. Write, for example, [1.0, 2.0, 3.0].")
     numbers: list[Any] = list(given)
     if not numbers:

@@ -21,6 +21,7 @@ from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentences
 from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.tasks import tasks
+from inerter.formatting import format_count
 from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.method import MethodWithChecks, MethodWithKernels, constituents_of
@@ -60,16 +61,17 @@ def check_lines(path: Path) -> Iterator[str]:
 def _study_size(study: Study) -> str:
     """Clause on the numbers of designs and of parts of tasks."""
     counts = {task.items or task.key: len(task.parts(study)) for task in tasks()}
-    further = "".join(f", and {number} {kind}" for kind, number in counts.items() if number)
-    swept = "".join(f", {sweep.label} at {len(sweep.values)} values" for sweep in study.sweeps)
-    return f"{swept}: {len(cases(study))} designs to {'find' if study.optimise else 'judge'}{further}"
+    further = "".join(f", and {format_count(number, kind)}" for kind, number in counts.items() if number)
+    swept = "".join(f", {sweep.label} at {format_count(len(sweep.values), 'values')}" for sweep in study.sweeps)
+    designs = format_count(len(cases(study)), "designs")
+    return f"{swept}: {designs} to {'find' if study.optimise else 'judge'}{further}"
 
 
 def _search_size(study: Study) -> str:
     """Clause on the number of networks that a search of a study with free networks compares."""
     plans = search_plans(study)
     counts = {layout: len(plan.topologies) for (layout, _), plan in plans.items()}
-    networks = ", ".join(f"{count} networks of {layout}" for layout, count in counts.items())
+    networks = ", ".join(f"{format_count(count, 'networks')} of {layout}" for layout, count in counts.items())
     return (
         f": {networks} to search for each index{', and for their Pareto front' if study.trade_off else ''}"
         f"{', and the best with real inerters' if study.real_inerters is not None else ''}"

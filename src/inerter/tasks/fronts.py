@@ -15,7 +15,7 @@ from inerter.files.study.limits import limits_in
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
-from inerter.formatting import format_list, format_quantity, label_with_unit
+from inerter.formatting import format_count, format_list, format_quantity, label_with_unit
 from inerter.methods.registry import with_decisive_method
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
@@ -244,6 +244,8 @@ def _dominance_clause(front: FrontAnswer, baseline: FrontAnswer) -> str:
     if front is baseline or not len(ours) or not len(theirs):
         return ""
     beaten = sum(bool(np.any(np.all(ours < point * (1.0 - _SAME), axis=1))) for point in theirs)
-    count = "all" if beaten == len(theirs) else f"{beaten or 'none'} of the"
+    designs = format_count(len(theirs), "designs")
+    whole = "the design" if len(theirs) == 1 else f"all {designs}"
+    those = whole if beaten == len(theirs) else f"{beaten or 'none'} of the {designs}"
     both = "both" if ours.shape[1] == 2 else "all"
-    return f", better in {both} indices than {count} {len(theirs)} designs of {baseline.layout}"
+    return f", better in {both} indices than {those} of {baseline.layout}"

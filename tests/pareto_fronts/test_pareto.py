@@ -313,6 +313,15 @@ def test_a_front_of_what_is_simulated_on_roads():
     assert np.all(np.diff(front.values[:, 1]) < 0.0)
 
 
+def test_a_condition_that_is_never_the_worst_changes_no_front():
+    """Its indices lie so far below the range of the front that, normalised, they are negative."""
+    use = it.Conditions([it.Condition(0.5), it.Condition(0.5, road={"speed": 8.0})])
+    car = paper_quarter_car(strut("S2"))
+    over = it.pareto_front(car, [use.worst(J1), use.worst(J3)], NORM, points=7)
+    alone = it.pareto_front(car, [J1, J3], NORM, points=7)
+    assert over.values == pytest.approx(alone.values, rel=1e-6)
+
+
 def test_a_front_of_a_half_car_over_conditions():
     use = it.Conditions([it.Condition(1.0, road={"speed": 15.0}), it.Condition(2.0, vehicle={"sprung_mass": 900.0})])
     front, rear = (

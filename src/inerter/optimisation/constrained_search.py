@@ -105,7 +105,8 @@ def _log_rows(function: Differentiable, point: Array, which: Any, following: boo
     else:
         values, gradients = function.components(point, peaks[:_PEAKS] if following else peaks)
     good = np.isfinite(values) & (values > 0.0) & np.all(np.isfinite(gradients), axis=1)
-    logs, slopes = np.full(values.size, -_HIDDEN), np.zeros((values.size, point.size))
+    low = np.isfinite(values) & (values <= 0.0)  # far below the level, as a condition that is never the worst may be
+    logs, slopes = np.where(low, _HIDDEN, -_HIDDEN), np.zeros((values.size, point.size))
     logs[good], slopes[good] = np.log(values[good]), gradients[good] * point / values[good, None]
     if peaks is None or not following:
         return logs, slopes

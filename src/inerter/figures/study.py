@@ -33,7 +33,7 @@ from inerter.figures.labels import (
     trade_off_title,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
-from inerter.figures.style import WIDE, add_legend, file_stems, new_figure, save, style_context
+from inerter.figures.style import add_legend, file_stems, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
 from inerter.formatting import format_list, format_number
 
@@ -85,8 +85,9 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
         yield StudyFigure(
             "front",
-            f"{trade_off_title(every)}: no design of a layout is better in all of them. Large open markers: the knee, "
-            f"beyond which {'either' if len(criteria(every)) == 2 else 'each'} is bought dearly."
+            f"{trade_off_title(every)}: along a front an index improves only as "
+            f"{'the other' if len(criteria(every)) == 2 else 'another'} gets worse. Large open markers: the knee, "
+            "beyond which a small gain costs much."
             + (" Gaps: the front continues with another kind of design." if bool(every["front_jump"].any()) else ""),
             partial(_front, every),
         )
@@ -195,7 +196,7 @@ def _uncertain(results: xr.Dataset, sentence: str) -> str:
 
 def _front(results: xr.Dataset) -> Figure:
     panels = len(pairs(results))
-    figure, axes = new_figure(panels, panels, height=3.6 if panels == 1 else 2.9, width=WIDE if panels > 1 else 5.0)
+    figure, axes = new_figure(panels, panels, height=3.6 if panels == 1 else 2.9)
     front_curves(results, axes)
     add_legend(figure, axes)
     return figure

@@ -33,6 +33,7 @@ from inerter.formatting import (
 )
 from inerter.indices.registry import INDICES, index_settings
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
+from inerter.table import Quantity
 from inerter.units import parse_quantity
 from inerter.vehicle.registry import VEHICLES
 
@@ -305,3 +306,20 @@ def test_one_thing_is_named_in_the_singular() -> None:
         "1 break-even value",
         "2 break-even values",
     ]
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (549.03, "N", "549.0 N"),
+        (999.96, "N", "1.000 kN"),
+        (0.20002, "m/s^2", "0.2000 m/s^2"),
+        (549.0, "N", "549 N"),
+        (22.2222222222222222 * 3.6, "km/h", "80 km/h"),
+        (12345.6, "kg", "12350 kg"),
+        (1.23e-9, "N", "1.23e-09 N"),
+        (0.0, "N", "0 N"),
+    ],
+)
+def test_a_table_keeps_the_zeros_of_a_rounded_number(value: float, unit: str, text: str) -> None:
+    assert str(Quantity(value, unit)) == text

@@ -18,6 +18,7 @@ _PREFIXES: dict[str, tuple[tuple[float, float, str], ...]] = {  # smallest size,
     "m/N": ((1.0, 1.0, "m/N"), (1e-3, 1e3, "mm/N"), (0.0, 1e6, "um/N")),
 }
 _DIGITS = 4  # of a quantity, unless more or fewer are asked for
+_ALIKE = 1e-9  # of a number: closer ones are the same, but for the rounding of units
 _MOST_DIGITS = 6  # of a value with an interval
 _EXACT = 12  # digits to which values are shown that differ in fewer
 _SMALL, _LARGE = 1e-4, 1e6  # numbers in a prefixed unit; others are written with a power of ten and without a prefix
@@ -120,24 +121,36 @@ def format_decimals(value: float, decimals: int, sign: str = "") -> str:
 
 
 def format_quantity(
-    value: float, unit: str, digits: int = _DIGITS, *, error: float = math.nan, bound: float = math.nan
+    value: float,
+    unit: str,
+    digits: int = _DIGITS,
+    *,
+    error: float = math.nan,
+    bound: float = math.nan,
+    zeros: bool = False,
 ) -> str:
     """Value [`unit`] as text: at most `digits` significant digits and a suitable prefix; "n/a" for nan, "inf".
 
     With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
     error, the relative `bound`, allows no more. Without one, `parse_quantity` reads the text back to its digits.
+    `zeros` at the end are kept where the value has more digits, as in a table.
 
     >>> format_quantity(7544.2, "N s/m"), format_quantity(7544.2, "N s/m", error=23.0), format_quantity(2e-3, "s")
     ('7.544 kN s/m', '7.544 +- 0.023 kN s/m', '2 ms')
     >>> format_quantity(7544.2, "N s/m", bound=1e-3), format_quantity(float("nan"), "N")
     ('7.54 kN s/m', 'n/a')
+    >>> format_quantity(549.03, "N"), format_quantity(549.03, "N", zeros=True), format_quantity(549.0, "N", zeros=True)
+    ('549 N', '549.0 N', '549 N')
     """
     if not math.isfinite(value):
         return format_number(value)
     if shows_error(value, error, bound):
         own = _scale(value, unit)
         return _with_unit(format_uncertain(value * own.factor, error * own.factor, bound), own.unit)
-    return _in_scale(value, _scale(value, unit, digits), significant_digits(value, bound, digits))
+    own, shown = _scale(value, unit, digits), significant_digits(value, bound, digits)
+    if zeros and _has_more_digits(value * own.factor, shown):
+        return _with_unit(_with_zeros(value * own.factor, shown), own.unit)
+    return _in_scale(value, own, shown)
 
 
 def format_alike(values: Iterable[float], unit: str, digits: int = _DIGITS) -> list[str]:
@@ -257,8 +270,8 @@ def format_entry(value: float, bound: float = math.nan) -> str:
     ('2.500', '2.5')
     """
     digits = significant_digits(value, bound)
-    text = f"{value:#.{digits}g}"
-    return re.sub(r"\.(?=e|$)", "", text if digits == _DIGITS or "e" not in text else format_number(value, digits))
+    text = _with_zeros(value, digits)
+    return text if digits == _DIGITS or "e" not in text else format_number(value, digits)
 
 
 def shows_error(value: float, error: float, bound: float = math.nan) -> bool:
@@ -386,6 +399,17 @@ def _in_scale(value: float, own: Scale, digits: int) -> str:
         if math.isfinite(value)
         else format_number(value)
     )
+
+
+def _has_more_digits(value: float, digits: int) -> bool:
+    """Whether a number has more than so many digits, of which rounding leaves zeros at the end in a plain text."""
+    text = f"{value:.{digits}g}"
+    return "e" not in text and abs(float(text) - value) > _ALIKE * abs(value)
+
+
+def _with_zeros(value: float, digits: int) -> str:
+    """Number with all its significant digits, zeros at the end among them."""
+    return re.sub(r"\.(?=e|$)", "", f"{value:#.{digits}g}")
 
 
 def _with_unit(text: str, unit: str) -> str:

@@ -30,7 +30,7 @@ class Quantity:
 
     def __str__(self) -> str:
         if self.scale is None:
-            return format_quantity(self.value, self.unit, error=self.error, bound=self.bound)
+            return format_quantity(self.value, self.unit, error=self.error, bound=self.bound, zeros=True)
         value, error = self.value * self.scale.factor, self.error * self.scale.factor
         if shows_error(value, error, self.bound):
             return format_uncertain(value, error, self.bound)

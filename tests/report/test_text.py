@@ -43,7 +43,7 @@ def test_designs_with_their_numbers():
         "Best for ride comfort (J1)",
         "  Layout  J1           Improvement  Parameters",
         "  S1      2.575 m/s^2  baseline     c = 4.12 kN s/m",
-        "  S2      2.42 m/s^2   +6.0 %       c = 3.873 kN s/m, b = 250 kg",
+        "  S2      2.420 m/s^2  +6.0 %       c = 3.873 kN s/m, b = 250 kg",
         "  S3      2.266 m/s^2  +12.0 %      c = 3.626 kN s/m,",
         "                                    b = 250 kg (at its upper bound)",
     ]

@@ -50,14 +50,14 @@ class DesignEstimate:
 
         None where one of them has no number, or values that nobody has chosen: the middle of their bounds is no design.
         """
-        known, found = self._compared.get(id(other), (None, None))
+        known, found = self._comparisons.get(id(other), (None, None))
         if known is not other:
             found = self._compare(other)
-            self._compared[id(other)] = other, found
+            self._comparisons[id(other)] = other, found
         return found
 
     @cached_property
-    def _compared(self) -> dict[int, tuple[DesignEstimate, Comparison | None]]:
+    def _comparisons(self) -> dict[int, tuple[DesignEstimate, Comparison | None]]:
         """Comparisons with other estimates, by their identity: an answer needs each of them several times."""
         return {}
 

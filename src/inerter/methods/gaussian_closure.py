@@ -205,8 +205,8 @@ class Pattern:
                 found[:, i] |= [name in forces for name in outputs]
         return found
 
-    def carried(self, values: Mapping[str, float]) -> Array:
-        """What part of the force of each friction is in each output (outputs, frictions), in the unit of that over N.
+    def force_shares(self, values: Mapping[str, float]) -> Array:
+        """Part of the force of each friction in each output (outputs, frictions), in the unit of the output over N.
 
         `values` are those of all that is free. From the responses H with the damper c of a friction and with 2 c, H':
         since its force is c times the velocity v' across it, the part is |H' - H| / (c |v'|), here in the mean square
@@ -246,7 +246,7 @@ class Pattern:
         """
         rows = self.rows(points, dampers.damping)
         names = tuple(self.index.problem.descriptor.free)
-        parts = np.array([self.carried(dict(zip(names, row.tolist(), strict=True))) for row in rows])
+        parts = np.array([self.force_shares(dict(zip(names, row.tolist(), strict=True))) for row in rows])
         limits = np.where(dampers.sticks, 0.0, self.parts.limits(points))
         limits /= self.index.problem.definition.drive.amplitude_density
         norms = self.index.output_norms(rows)

@@ -95,7 +95,7 @@ def with_limits(estimate: Estimate, held: Sequence[ConstraintResult]) -> Estimat
 
 def infeasible(held: Sequence[ConstraintResult], parameters: Mapping[str, float], units: Mapping[str, str]) -> Status:
     """Status of an infeasible problem, with the closest design and its parameters."""
-    limits, nearest = _said(held)
+    limits, nearest = _constraint_words(held)
     at = ", ".join(f"{name} = {format_quantity(value, units[name])}" for name, value in parameters.items())
     return Status(
         StatusKind.INFEASIBLE,
@@ -107,11 +107,11 @@ def broken(held: Sequence[ConstraintResult]) -> Status:
     """Status of a design that has nothing to be chosen: "infeasible" where it breaks a constraint, else `OK`."""
     if not any(one.excess > KEPT_COSTLY for one in held):
         return OK
-    limits, nearest = _said(held)
+    limits, nearest = _constraint_words(held)
     return Status(StatusKind.INFEASIBLE, f"no feasible design for {limits}, as all values are fixed: {nearest}")
 
 
-def _said(held: Sequence[ConstraintResult]) -> tuple[str, str]:
+def _constraint_words(held: Sequence[ConstraintResult]) -> tuple[str, str]:
     """All constraints in words, and the values of those that are broken."""
     labels = list(dict.fromkeys(one.label for one in held))  # a limit has the same one in all conditions
     worst = [max((one for one in held if one.label == label), key=lambda one: one.excess) for label in labels]

@@ -65,3 +65,15 @@ def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
     assert (f"Without tolerances {nominal['layout']} is best" in text) == (nominal is not best)
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert "With tolerances" in page
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_a_distribution_that_is_one_value_is_due_to_nothing(tmp_path, capsys):
+    """The travel of a spring beside a damper does not depend on the spring."""
+    path = tmp_path / "study.toml"
+    settings = 'indices = ["suspension-travel"]\ntolerance = { k = "20 %" }'
+    path.write_text(study_text(settings, layouts='S1 = "k | c"'), encoding="utf-8")
+    assert call(["run", str(path), "-o", str(tmp_path / "out"), "-j", "1"]) == 0
+    text = " ".join(capsys.readouterr().out.split())
+    assert "With tolerances S1 is best" in text
+    assert "due to" not in text.partition("With tolerances")[2]

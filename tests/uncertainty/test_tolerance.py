@@ -81,6 +81,17 @@ def found_again(executor=None):
     return it.tolerance_analysis(fixed(), J1, NORM, spread=spread, samples=16, executor=executor)
 
 
+@pytest.mark.parametrize("names", [("k", "b"), ("k",)])
+def test_rounding_is_due_to_no_value(names: tuple[str, ...]) -> None:
+    """With spring, damper and inerter in parallel the mean square of the travel is S (ms + mu) / (2 c)."""
+    car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(9000.0) | it.Inerter(60.0))
+    travel = it.SuspensionTravel(it.Road(5e-7, 25.0))
+    found = it.tolerance_analysis(car, travel, it.Norm(), spread=dict.fromkeys(names, 0.1), samples=64)
+    assert found.status.ok
+    assert found.mean == pytest.approx(2.0 * np.pi * np.sqrt(5e-7 * 25.0 * (250.0 + 35.0) / (2.0 * 9000.0)), rel=1e-9)
+    assert found.first_order == found.total_order == dict.fromkeys(names, 0.0)
+
+
 def test_quantities_of_the_vehicle_scatter_one_by_one():
     found = it.tolerance_analysis(fixed(), J1, NORM, spread={"sprung_mass": 0.1, "c": 0.1}, samples=16)
     top = found.worst_values

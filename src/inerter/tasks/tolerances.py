@@ -185,7 +185,8 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
         compared = "; no other layout is better than this baseline"
     neglect = neglect_clause(study, best.method)
     model = f" ({neglect})" if neglect else ""
-    due = f", mostly due to {_shares(best)[0][1]}" if _shares(best) else ""
+    share, name = (_shares(best) or [(0.0, "")])[0]
+    due = f", mostly due to {name}" if share > 0.0 else ""
     order = f" Without tolerances {nominal.layout} is best." if nominal is not best else ""
     doubts = dict.fromkeys(one.message.rstrip(".") for one in known if not one.ok)
     certain = "".join(f"Not certain: {doubt}. " for doubt in doubts)

@@ -39,6 +39,7 @@ Array = NDArray[np.float64]
 _MOST_CORNERS = 10  # values with tolerances up to which all extremes are combined
 _TRIED, _FEW = 64, 256  # designs tested before the sample, and size of the sample where each takes long
 _TRIED_ALONE = 16  # designs tested where each is a separate mechanism
+_ROUNDING = 2e-9  # relative range of values that are equal, as of two exact norms
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,10 +235,10 @@ def quantile_error(values: Array, share: float) -> tuple[float, tuple[float, flo
 
 
 def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:
-    """First-order and total-order Sobol' indices; 0 where nothing varies."""
-    samples = mixed.shape[1]
-    if len(mixed) == 1 or np.ptp(both) == 0.0:
-        share = np.full(len(mixed), float(np.ptp(both) > 0.0))
+    """First-order and total-order Sobol' indices; 0 where nothing varies but by rounding."""
+    samples, varies = mixed.shape[1], bool(np.ptp(both) > _ROUNDING * np.abs(both).max())
+    if len(mixed) == 1 or not varies:
+        share = np.full(len(mixed), float(varies))
         return share, share
     tables = {"f_A": both[None, :samples], "f_B": both[None, samples:], "f_AB": mixed[:, None, :]}
     indices: Any = scipy.stats.sobol_indices  # the stubs do not know this form of tables

@@ -165,7 +165,7 @@ WRONG = {
         lambda: optimise(car(k | Friction(free(1.0, 5.0, "f")) | Damper(free(10.0, 1e6, "c"))), J1, Norm()),
         "no effect",
     ),
-    "values missing": (lambda: evaluate_many(open_car(), J1, {"c": [1.0]}, Norm()), "Give values for b"),
+    "values missing": (lambda: evaluate_many(open_car(), J1, {"c": [1.0]}, Norm()), "Values for b missing"),
     "values of a stranger": (lambda: evaluate_many(open_car(), J1, {"q": [1.0]}, Norm()), "unknown free value 'q'"),
     "values of two lengths": (
         lambda: evaluate_many(open_car(), J1, {"c": [1.0, 2.0], "b": [1.0, 2.0, 3.0]}, Norm()),
@@ -203,7 +203,7 @@ WRONG = {
     "matrices not finite": (lambda: LinearSystem([[math.nan]], [[1.0]], [[1.0]], [[0.0]]), "A has entries"),
     "too many names": (
         lambda: LinearSystem([[-1.0]], [[1.0]], [[1.0]], [[0.0]], inputs=("a", "b")),
-        "1 inputs, which need as many different names",
+        "The 1 inputs of the system require as many different names",
     ),
     "negative delay": (lambda: system().with_delays("road", [-1.0]), "zero or more seconds"),
     "selecting a stranger": (lambda: system().subsystem(outputs="x"), "Unknown output 'x'"),

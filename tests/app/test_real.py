@@ -168,7 +168,7 @@ def test_wrong_requests_of_the_command_line(
         port = str(taken.getsockname()[1])
         for arguments, words in (
             ([str(tmp_path / "nothing.toml")], "no such file"),
-            (["--port", port], "cannot be taken"),
+            (["--port", port], "is not available"),
             (["--port", "99999"], "65535"),
             (["--limit", "0"], "bytes"),
         ):
@@ -236,7 +236,7 @@ def test_a_folder_that_can_be_none_is_a_sentence(tmp_path: Path) -> None:
     command = [sys.executable, "-c", START, "serve", "--no-browser", "--folder", str(tmp_path / "mine.txt")]
     told = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert told.returncode == 2
-    assert "mine.txt: cannot be a folder for work" in told.stderr
+    assert "mine.txt: cannot be used as the folder of jobs" in told.stderr
     assert len(told.stderr.splitlines()) == 1
 
 

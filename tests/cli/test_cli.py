@@ -84,7 +84,7 @@ def test_what_continues_an_interrupted_command_is_a_whole_command(
     ):
         assert call(asked) == 130
         said = capsys.readouterr().err.splitlines()[-1]
-        words = said.removeprefix("inerter: interrupted; what was computed is kept. Continue with: inerter ")
+        words = said.removeprefix("inerter: interrupted; completed results are kept. Continue with: inerter ")
         assert sorted(shlex.split(words)) == sorted([*asked, "--resume"])
 
 

@@ -107,7 +107,7 @@ def test_unknown_kinds_and_forms() -> None:
     ],
 )
 def test_what_cannot_be_exported(key: str, of: object, wanted: str) -> None:
-    with pytest.raises(it.InerterError, match=f"An export to {key} is one of {wanted}, got "):
+    with pytest.raises(it.InerterError, match=f"An export to {key} requires {wanted}, got "):
         it.export(of, key)  # type: ignore[arg-type]
 
 

@@ -105,7 +105,7 @@ def test_an_unknown_platform_and_a_missing_compiler(monkeypatch: pytest.MonkeyPa
     with pytest.raises(it.InerterError, match=r"Unknown platform 'windos'.*Did you mean 'windows'"):
         it.export(CAR, "fmu", platforms=["windos"])
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    with pytest.raises(it.InerterError, match=r"install their compiler: pip install \"inerter\[fmu\]\""):
+    with pytest.raises(it.InerterError, match=r"require their compiler: pip install \"inerter\[fmu\]\""):
         it.export(CAR, "fmu", platforms=["windows"])
     monkeypatch.setattr("platform.system", lambda: "Windows")
     with pytest.raises(it.InerterError, match="on Linux on x86-64 only"):

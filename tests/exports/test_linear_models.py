@@ -155,7 +155,7 @@ def test_a_linear_system_has_its_names() -> None:
     system = it.state_space(CAR, "road", "strut_travel")
     made = it.export(system, "control")
     assert made.input_labels == ["road"]
-    with pytest.raises(it.InerterError, match="share a source or arrive late"):
+    with pytest.raises(it.InerterError, match="share a source or are delayed"):
         it.export(system.with_delays("road", [0.1]), "control")
     with pytest.raises(it.InerterError, match="has no descriptor"):
         it.named_system(system, form="descriptor")

@@ -120,7 +120,7 @@ def test_a_trajectory_is_written_to_the_last_bit() -> None:
     assert np.array_equal(found["strut_force [N]"], run["strut_force"])
     data = xr.open_dataset(io.BytesIO(it.export(run, "netcdf")), engine="h5netcdf")
     assert np.array_equal(data["sprung_acceleration"].values, run["sprung_acceleration"])
-    with pytest.raises(it.InerterError, match="one of a vehicle or a LinearSystem, got Trajectory"):
+    with pytest.raises(it.InerterError, match="requires a vehicle or a LinearSystem, got Trajectory"):
         it.export(run, "control")
 
 
@@ -130,7 +130,7 @@ def test_a_pole_at_a_frequency_is_refused() -> None:
     pole = float(np.abs(np.linalg.eigvals(system.A)).max() / (2.0 * np.pi))
     assert it.export(car, "csv", frequencies=[1.01 * pole])
     for bad in ([0.0], [-1.0], [], [np.nan], "1 Hz"):
-        with pytest.raises(it.InerterError, match="Frequencies are positive numbers of Hz"):
+        with pytest.raises(it.InerterError, match="Frequencies must be positive numbers of Hz"):
             it.export(car, "csv", frequencies=bad)
 
 

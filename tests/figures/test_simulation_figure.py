@@ -120,7 +120,7 @@ def test_a_window_is_what_is_drawn():
     for ax in figure.axes:
         assert ax.get_xlim() == (0.25, 0.5)
         assert ax.lines[0].get_xdata().min() >= 0.25
-    with pytest.raises(StudyError, match="less than two samples"):
+    with pytest.raises(StudyError, match="fewer than two of the samples"):
         simulation_figure(case_of("quarter car"), (7.0, 8.0))
 
 

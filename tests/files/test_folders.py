@@ -219,7 +219,7 @@ def test_an_input_is_never_replaced_by_whatever_path_it_is_given(
     assert known is not None
     for given in spellings(path):
         (home / "recorded.toml").write_text(body + signal.format(given) + tail)
-        assert "events.csv is what this command reads" in refused([*command, "--force"], home, capsys)
+        assert "this command reads events.csv" in refused([*command, "--force"], home, capsys)
 
 
 def test_the_resolved_study_may_be_resumed_in_its_folder_but_not_replaced(
@@ -230,7 +230,7 @@ def test_the_resolved_study_may_be_resumed_in_its_folder_but_not_replaced(
     command = ["run", "out/study.resolved.toml", *RUN[2:]]
     assert call([*command, "--resume"]) == 0
     assert results_of(home / "out") == before
-    assert "study.resolved.toml is what this command reads" in refused([*command, "--force"], home, capsys)
+    assert "this command reads study.resolved.toml" in refused([*command, "--force"], home, capsys)
 
 
 @pytest.mark.parametrize("where", ["out", "deep/er/out"])

@@ -142,7 +142,7 @@ def test_simulated_means_have_errors():
         (lambda: it.Condition(road={"sped": 3.0}), "numbers of one by name"),
         (lambda: it.Condition(road="B"), "The road of a condition"),
         (lambda: it.Condition(vehicle=3.0), "numbers of the vehicle by name"),
-        (lambda: USE.mean("J1"), "Expected an index"),
+        (lambda: USE.mean("J1"), "Conditions require an index"),
         (
             lambda: it.optimise(car(), it.Conditions([it.Condition(vehicle={"mass": 1.0})]).mean(J1), NORM),
             "unknown value",

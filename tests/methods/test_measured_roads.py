@@ -154,7 +154,7 @@ def test_another_road_takes_its_place():
 
 
 BAD = {
-    "cannot be fitted": (lambda: it.measured_road(it.Road(1e-6, 20.0), 20.0), "that of road_spectrum"),
+    "cannot be fitted": (lambda: it.measured_road(it.Road(1e-6, 20.0), 20.0), r"requires road_spectrum\(profile\)"),
     "no speed": (lambda: it.measured_road(line(2.0), 0.0), "speed over a measured road must be a positive"),
     "too steep": (lambda: it.measured_road(line(4.5), 20.0), "waviness of the spectrum is 4.5"),
 }

@@ -105,7 +105,7 @@ REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
     "road and displacement": (lambda: drive(displacement=WAVE), r"either road or displacement"),
     "a delay without a speed": (
         lambda: drive(paper_half_car(STRUT, STRUT)),
-        r"2.04 m later, but neither the signal nor simulate\(\.\.\., speed=\.\.\.\) says",
+        r"2.04 m later, but neither the signal nor simulate\(\.\.\., speed=\.\.\.\) states",
     ),
     "a speed of zero": (lambda: drive(paper_half_car(STRUT, STRUT), speed=0.0), r"speed.*0"),
     "a signal that ends too early": (

@@ -50,7 +50,7 @@ def test_each_file_holds_what_a_simulation_says(tmp_path: Path) -> None:
 
 def test_a_folder_that_holds_something_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_text("dear to me", encoding="utf-8")
-    with pytest.raises(SimulationError, match=r"holds 'mine.txt' already"):
+    with pytest.raises(SimulationError, match=r"already contains 'mine.txt'"):
         it.simulate_to_files(CARS, tmp_path, outputs=OUTPUTS, duration=0.1, road=SIGNALS)
     assert [one.name for one in tmp_path.iterdir()] == ["mine.txt"]
 

@@ -182,7 +182,7 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(
     if how == signal.SIGINT:
         assert process.returncode == 130
         again = f"inerter run {study.path} -o {broken} --resume -j {processes}"
-        assert f"inerter: interrupted; what was computed is kept. Continue with: {again}\n" in problems.decode()
+        assert f"inerter: interrupted; completed results are kept. Continue with: {again}\n" in problems.decode()
         assert b"Traceback" not in problems
     kept = lines(broken / "journal.jsonl")
     assert points // 4 < len(kept) < 1 + 4 * points
@@ -267,7 +267,7 @@ def test_folder_in_use_is_refused(finished: Finished) -> None:
 
 
 def test_resume_and_force_exclude_each_other(finished: Finished) -> None:
-    with pytest.raises(StudyError, match="one of them"):
+    with pytest.raises(StudyError, match="one of the two"):
         finished.again(resume=True, force=True)
 
 

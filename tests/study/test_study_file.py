@@ -604,7 +604,7 @@ BAD = {
     "the same sweep twice": (
         [sweep('{ k = ["1 N/m", "2 N/m"], "elements.k" = ["1 N/m", "2 N/m"] }')],
         "study.sweep",
-        ["k twice", "two places"],
+        ["k twice", "two different key paths"],
     ),
     "a map of too many points": (
         [

@@ -195,7 +195,7 @@ def test_what_is_mounted_must_be_a_network(mount: str) -> None:
 
 
 def test_a_track_is_left_or_right() -> None:
-    with pytest.raises(MechanismError, match=r'track of road .* must be "left" or "right"'):
+    with pytest.raises(MechanismError, match=r'side of road .* must be "left" or "right"'):
         it.Mechanism(
             (it.Coordinate("a", 1.0),),
             (),

@@ -130,7 +130,7 @@ def test_a_study_on_a_cluster_is_the_same_to_the_last_byte(tmp_path: Path, there
     ("words", "code", "says"),
     [
         (["--scheduler", "somewhere"], 2, "expected such as tcp://HOST:8786"),
-        (["--scheduler", "tcp://127.0.0.1:9", "-j", "2"], 2, "leave --jobs out"),
+        (["--scheduler", "tcp://127.0.0.1:9", "-j", "2"], 2, "Leave --jobs out"),
         (["--tls-cert", "mine.pem"], 2, "without a scheduler"),
         (["--scheduler", "tcp://127.0.0.1:9", "--scheduler-file", "s.json"], 2, "give one of them"),
         (["--scheduler-file", "s.json"], 1, "s.json: file not found"),

@@ -107,7 +107,7 @@ def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:
     """
     designs = _of_studies(study, body)
     if not _FEWEST <= len(designs) <= _MOST:
-        raise DesignError(f"Two to four designs are compared, got {len(designs)}.")
+        raise DesignError(f"A comparison requires two to four designs, got {len(designs)}.")
     asked = _index_method_pairs(study, body)
     found: list[list[DesignEstimate]] = []
     for i, design in enumerate(designs):

@@ -71,9 +71,7 @@ def design_of(study: Study, layout: str, values: Values, name: str = "") -> Desi
     for key in values:
         if key not in study.elements and key not in units:
             known = ", ".join(dict.fromkeys([*study.elements, *units]))
-            raise DesignError(
-                f"Got a value of {quote_value(key)}, which is not in [elements], where there are {known}."
-            )
+            raise DesignError(f"Got a value of {quote_value(key)}, which is not in [elements]; available: {known}.")
     all_free = vehicle.free_values()
     chosen = {
         key: _number(key, values[key], units[key]) if key in values else _middle(free) for key, free in all_free.items()
@@ -137,7 +135,7 @@ def designs_of(study: Study, body: Mapping[str, Any]) -> list[Design]:
     if body.get("designs"):
         if other := [d.get("name") or d["layout"] for d in body["designs"] if d.get("study")]:
             raise DesignError(
-                f"Got {quote_value(other[0])}, a design of another study; such are only compared (panel compare)."
+                f"Got {quote_value(other[0])}, a design of another study, which only the panel compare accepts."
             )
         return [given_design(study, given) for given in body["designs"]]
     return [_layout_design(study, body, layout) for layout in body.get("layouts") or study.layouts]

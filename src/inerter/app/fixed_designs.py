@@ -48,7 +48,9 @@ def _fix_vehicle(vehicle: dict[str, Any], study: Study, designs: Sequence[Design
     for name, (place, number) in free_in_vehicle(study).items():
         values = {design.values[name] for design in designs}
         if len(values) > 1:
-            raise DesignError(f"These designs have several values of {name}, and a study has one. Take one at a time.")
+            raise DesignError(
+                f"The designs differ in {name}, of which a study has one value. Write one design at a time."
+            )
         *tables, key = place.key.split(".")
         reduce(getitem, tables, vehicle)[key] = f"{values.pop()!r} {number.unit}"
 

@@ -30,7 +30,7 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     study = study_from(body["study"])
     layouts, indices = body.get("layouts") or list(study.layouts), body.get("indices") or list(study.indices[:2])
     if not 2 <= len(indices) <= 3:
-        raise StudyError(f"A trade-off is one between two or three indices, got {len(indices)}.")
+        raise StudyError(f"A trade-off requires two or three indices, got {len(indices)}.")
     method = body.get("method") or study.optimise or methods_that(searches)[0]
     asked = replace(study, trade_off=tuple(indices), optimise=method, points=body.get("points") or _POINTS)
     found: list[FrontAnswer] = []

@@ -58,15 +58,15 @@ class AccessGuard:
         allowed = {f"{host}:{self.port}" for host in HOSTS}
         hosts = [value.decode("latin-1").lower() for name, value in headers if name == b"host"]
         if len(hosts) != 1 or hosts[0] not in allowed:
-            raise Refusal(403, "This server answers to 127.0.0.1 alone.")
+            raise Refusal(403, "This server accepts requests to 127.0.0.1 only.")
         origins = [value.decode("latin-1").lower() for name, value in headers if name == b"origin"]
         if any(origin not in {f"http://{host}" for host in allowed} for origin in origins):
-            raise Refusal(403, "This server answers to no other page than its own.")
+            raise Refusal(403, "This server accepts requests from its own page only.")
         sites = [value for name, value in headers if name == b"sec-fetch-site"]
         if scope["path"].startswith("/api") and any(site not in (b"same-origin", b"none") for site in sites):
-            raise Refusal(403, "This server answers to no other page than its own.")
+            raise Refusal(403, "This server accepts requests from its own page only.")
         if scope["path"].startswith("/api") and not self._knows(headers):
-            raise Refusal(401, "The token is missing or is not that of this server: open the link that it has printed.")
+            raise Refusal(401, "The token is missing or wrong. Open the link that the server has printed.")
 
     def _knows(self, headers: list[tuple[bytes, bytes]]) -> bool:
         given = [value for name, value in headers if name == b"authorization"]

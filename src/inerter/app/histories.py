@@ -100,9 +100,9 @@ def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) ->
     duration, step = float(body.get("duration") or _DURATION), float(body.get("step") or _STEP)
     if duration > _LONGEST:
         given, most = format_alike([duration, _LONGEST], "s")
-        raise StudyError(f"Got {given}; a page shows at most {most}. Longer ones are for: inerter simulate.")
+        raise StudyError(f"The page simulates at most {most}, got {given}. For longer motions use inerter simulate.")
     if study.road is None:
-        raise StudyError("The motion is one over a road, and this study has none. Add [road].")
+        raise StudyError("The motion requires a road, and this study has none. Add [road].")
     return SimulationRequest(
         title=study.title,
         path=study.path,

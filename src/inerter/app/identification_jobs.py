@@ -26,7 +26,7 @@ Body = Mapping[str, Any]
 def identify(body: Body, folder: Path, tell: Tell) -> Any:
     records = [Path(record) for record in body.get("records") or ()]
     if not records:
-        raise RecordError("Which records? Send their files to /api/records, and give the ids as `records`.")
+        raise RecordError("Records missing. Send their files to /api/records, and give the ids as `records`.")
     request = identification_of({"model": {}, **(body.get("config") or {})}, PATH)
     request = replace(request, name=body.get("model") or request.name)
     request.models()

@@ -85,7 +85,7 @@ class Jobs:
         for old in [job for job in self.known.values() if job.state in ENDED][: max(len(self.known) - _MOST + 1, 0)]:
             self.forget(old)
         if len(self.known) >= _MOST:
-            raise Refusal(400, f"{_MOST} pieces of work are waiting. Stop some of them first.")
+            raise Refusal(400, f"{_MOST} jobs are waiting. Stop some of them first.")
         name = token_hex(8)
         job = Job(name, kind, title or KINDS[kind].title, self.root / name)
         job.folder.mkdir(parents=True)
@@ -97,7 +97,7 @@ class Jobs:
     def get(self, name: str) -> Job:
         """Job of that id; raises `Refusal` if there is none."""
         if name not in self.known:
-            raise Refusal(404, "Unknown work: it was removed, or the server was restarted.")
+            raise Refusal(404, "Unknown job: it was deleted, or the server was restarted.")
         return self.known[name]
 
     def stop(self, job: Job) -> None:
@@ -111,7 +111,7 @@ class Jobs:
         """Append a job that was stopped or failed to the queue again; raises `Refusal` for any other."""
         if job.state not in ("stopped", "failed") or not KINDS[job.kind].resumes:
             resuming = ", ".join(kind.key for kind in KINDS.values() if kind.resumes)
-            raise Refusal(400, f"Work of the kind {job.kind} is {job.state}; only {resuming} resumes, when stopped.")
+            raise Refusal(400, f"This job ({job.kind}) is {job.state}; only stopped jobs ({resuming}) resume.")
         (job.folder / STOP).unlink(missing_ok=True)
         job.state, job.begun, job.ended, job.sentence, job.over = "waiting", None, None, "", asyncio.Event()
         self._queue.put_nowait(job)

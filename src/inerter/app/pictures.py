@@ -34,7 +34,7 @@ def picture(body: Mapping[str, Any]) -> bytes:
     """
     kind, form = body["kind"], body["format"]
     if form not in FORMATS:
-        raise StudyError(f"A picture is one of {', '.join(FORMATS)}, got {form!r}.")
+        raise StudyError(f"Unknown format {form!r}; available: {', '.join(FORMATS)}.")
     study = study_from(body["study"])
     designs = designs_of(study, body)
     with TemporaryDirectory() as name:
@@ -48,14 +48,14 @@ def picture(body: Mapping[str, Any]) -> bytes:
         drawn = {_KINDS.get(path.stem, path.stem): path for path in sorted(folder.glob(f"*.{form}"))}
         if kind not in drawn:
             known = ", ".join(dict.fromkeys((NETWORKS, HISTORY, *drawn)))
-            raise StudyError(f"There are pictures of {known}, got {kind!r}.")
+            raise StudyError(f"Unknown kind of picture {kind!r}; available: {known}.")
         return drawn[kind].read_bytes()
 
 
 def _motion(study: Study, designs: Sequence[Design], body: Mapping[str, Any]) -> SimulationResult:
     """The motion of a single design on the road, as the page shows it."""
     if len(designs) != 1:
-        raise DesignError(f"A picture of the motion is one of a single design, got {len(designs)}.")
+        raise DesignError(f"A picture of the motion requires a single design, got {len(designs)}.")
     asked = simulation_request(study, designs[0], body)
     return SimulationResult(asked, asked.run())
 

@@ -104,7 +104,7 @@ async def _quantities(server: Server, request: Request, body: bodies.Quantities)
 async def _panel(server: Server, request: Request, body: bodies.PanelRequest) -> Response:
     key = request.path_params["name"]
     if key not in PANELS:
-        raise Refusal(404, f"There is no panel {key!r}; there are {', '.join(PANELS)}.")
+        raise Refusal(404, f"Unknown panel {key!r}; available: {', '.join(PANELS)}.")
     asked = body.model_dump(exclude_unset=True)
     lane = "quick" if at_once(key, asked) else "slow"
     if lane == "slow" or key == "optimise":
@@ -116,7 +116,7 @@ async def _panel(server: Server, request: Request, body: bodies.PanelRequest) ->
 
 async def _add_work(server: Server, request: Request, body: bodies.WorkRequest) -> Response:
     if body.kind not in KINDS:
-        raise Refusal(400, f"There is no work of the kind {body.kind!r}; there are {', '.join(KINDS)}.")
+        raise Refusal(400, f"Unknown kind of job {body.kind!r}; available: {', '.join(KINDS)}.")
     asked = body.model_dump(exclude_unset=True, exclude={"wait", "title", "kind"})
     asked["records"] = [str(server.records.get(record)) for record in body.records]
     swept = f"Sweep of {' and '.join(body.sweep)}" if body.kind == "sweep" and body.sweep else ""
@@ -168,7 +168,7 @@ async def _work_files(server: Server, request: Request) -> dict[str, Any]:
 async def _work_file(server: Server, request: Request) -> Response:
     files, name = _job(server, request).files(), request.path_params["name"]
     if name not in files:
-        raise Refusal(404, "Unknown file of this work.")
+        raise Refusal(404, "Unknown file of this job.")
     return FileResponse(files[name], media_type=media_type(name), filename=files[name].name)
 
 

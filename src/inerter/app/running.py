@@ -102,7 +102,7 @@ def _token() -> str:
     given = os.environ.get(TOKEN)
     if given is not None and not re.fullmatch(r"[A-Za-z0-9_-]{16,200}", given):
         raise StudyError(
-            f"{TOKEN} has 16 to 200 letters, digits, hyphens and underscores; leave it out for a new token."
+            f"{TOKEN} must have 16 to 200 letters, digits, hyphens and underscores. Leave it out for a new token."
         )
     return given or secrets.token_urlsafe(24)
 
@@ -111,7 +111,7 @@ def _token() -> str:
 def _listening(port: int | None) -> Iterator[socket.socket]:
     """A socket on this machine alone."""
     if port is not None and not 0 <= port <= 65535:
-        raise StudyError(f"A port is a number from 0 to 65535, got {port}.")
+        raise StudyError(f"A port must be a number from 0 to 65535, got {port}.")
     with socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP) as listening:
         if sys.platform != "win32":
             listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -121,7 +121,9 @@ def _listening(port: int | None) -> Iterator[socket.socket]:
                 break
             except OSError as error:
                 if port is not None:
-                    raise StudyError(f"Port {port} cannot be taken ({error.strerror}). Leave it out.") from None
+                    raise StudyError(
+                        f"Port {port} is not available ({error.strerror}). Leave it out for a free port."
+                    ) from None
         else:
             raise WorkError("no port is free on this machine.")
         listening.listen(_BACKLOG)
@@ -134,7 +136,9 @@ def _folder(folder: str | Path | None) -> Iterator[Path]:
         try:
             Path(folder).mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StudyError(f"{folder}: cannot be a folder for work ({error.strerror}). Name another one.") from None
+            raise StudyError(
+                f"{folder}: cannot be used as the folder of jobs ({error.strerror}). Choose another."
+            ) from None
         yield Path(folder).absolute()
         return
     with TemporaryDirectory(prefix="inerter-", ignore_cleanup_errors=True) as made:

@@ -76,9 +76,9 @@ def _one_layout(study: Study, body: Body) -> Study:
     layout, *more_layouts = body.get("layouts") or [*searched, *study.layouts][:1]
     indices = tuple(dict.fromkeys(body.get("indices") or study.trade_off or study.indices[:1]))
     if more_layouts:
-        raise StudyError("A search in the workbench is one of one layout; got several. Choose one.")
+        raise StudyError("A search in the workbench covers one layout; got several. Choose one.")
     if len(indices) > _MOST_INDICES:
-        raise StudyError(f"A front over networks is one of two or three indices; got {len(indices)}. Choose fewer.")
+        raise StudyError(f"A front over networks requires two or three indices; got {len(indices)}. Choose fewer.")
     study.design(layout)
     for index in indices:
         study.index(index)

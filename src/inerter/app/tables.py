@@ -17,7 +17,7 @@ Rows = Iterable[list[Any]]
 def as_csv(panel: str, request: Mapping[str, Any]) -> str:
     """The answer of a panel as a table; raises `StudyError` for a panel that is none, and what it raises."""
     if panel not in _TABLES:
-        raise StudyError(f"There are tables of {', '.join(_TABLES)}, not of {panel!r}.")
+        raise StudyError(f"The panel {panel!r} has no table; available: {', '.join(_TABLES)}.")
     return csv_text(_TABLES[panel](answer_panel(panel, request)))
 
 

@@ -31,7 +31,9 @@ def workers(asked: Cluster, jobs: int | None = None) -> Iterator[Executor | None
     if asked.scheduler is not None and asked.scheduler_file is not None:
         raise StudyError("Got --scheduler and --scheduler-file; give one of them.")
     if jobs is not None:
-        raise StudyError("Got --jobs and a scheduler; leave --jobs out: the cluster has as many processes as it has.")
+        raise StudyError(
+            "Got --jobs and a scheduler. Leave --jobs out: the cluster determines the number of processes."
+        )
     tls = {"tls_ca_file": asked.tls_ca_file, "tls_client_cert": asked.tls_cert, "tls_client_key": asked.tls_key}
     given = {name: str(path) for name, path in tls.items() if path is not None}
     with cluster_executor(asked.scheduler, asked.scheduler_file, given) as executor:
@@ -71,8 +73,8 @@ def cluster_executor(address: str | None, file: Path | None, tls: Mapping[str, s
         client = distributed.Client(**where, security=security, timeout=_ANSWER, set_as_default=False)
     except Exception as error:  # of sockets, of TLS, of addresses that are none
         raise WorkError(
-            f"no Dask scheduler answers at {address or file} ({str(error) or type(error).__name__}). Is it running, "
-            "is this its address, and does it want TLS?"
+            f"no Dask scheduler answers at {address or file} ({str(error) or type(error).__name__}). Check that "
+            "it is running, its address, and whether it requires TLS."
         ) from None
     with client:
         yield client.get_executor(pure=False)

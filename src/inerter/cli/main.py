@@ -79,7 +79,7 @@ def run(
     """Optimise all layouts of a study file, and write tables, figures and a report.
 
     The folder, by default STUDY-results, then holds report.html, summary.csv,
-    results.nc and figures. An interrupted run keeps what was computed.
+    results.nc and figures. An interrupted run keeps completed results.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def search(
     """Find the best network: optimise every network that the free networks of a study file may be, and rank them.
 
     The folder, by default STUDY-search, then holds report.html, search.csv with
-    all networks, and figures. An interrupted search keeps what was computed.
+    all networks, and figures. An interrupted search keeps completed results.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def check(file: Path, /) -> None:
     Parameters
     ----------
     file
-        A study, simulation, rig or identification file (TOML); its sections tell which.
+        A study, simulation, rig or identification file (TOML), distinguished by its sections.
     """
     from inerter.cli.check import check as command
 
@@ -313,7 +313,7 @@ def export(
     /,
     *,
     to: Annotated[str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex.")],
-    layout: Annotated[str | None, Parameter(help="Layout; may be left out if there is one.")] = None,
+    layout: Annotated[str | None, Parameter(help="Layout; optional if there is only one.")] = None,
     index: BestFor = None,
     point: SweepPoint = None,
     only: Annotated[
@@ -333,7 +333,8 @@ def export(
         ),
     ] = (),
     linear: Annotated[
-        bool, Parameter(negative="", show_default=False, help="Leave out friction and gaps on purpose.")
+        bool,
+        Parameter(negative="", show_default=False, help="Export the linear model: neglect friction and close gaps."),
     ] = False,
     output: Annotated[
         Path | None,
@@ -343,8 +344,8 @@ def export(
 ) -> None:
     """Export a design to another program: matrices, Modelica source, a netlist, tables, or a drawing.
 
-    Free values are those of the best design for the index: read from a folder
-    of results, or found anew from a study file.
+    Design variables have the values of the best design for the index, read from a
+    folder of results or computed from a study file.
 
     Parameters
     ----------
@@ -393,8 +394,8 @@ def plot(
 ) -> None:
     """Plot designs, motions or results: responses, poles, drawings, time histories, fronts, maps.
 
-    Free values are those of the best design for the index: read from a folder
-    of results, or found anew from a study file. A motion is simulated anew.
+    Design variables have the values of the best design for the index, read from a
+    folder of results or computed from a study file. A motion is always simulated.
 
     Parameters
     ----------
@@ -413,7 +414,7 @@ def plot(
   inerter docs site    opens the site in that folder"""
 )
 def docs(site: Path | None = None, /) -> None:
-    """Open the documentation in the browser, or say how to get it.
+    """Open the documentation in the browser, or print how to build it.
 
     The site with all pages, the reference and the gallery takes 70 MB, and so
     it is not part of the package.

@@ -47,7 +47,7 @@ Resume = Annotated[
     Parameter(
         negative="",
         show_default=False,
-        help="Continue an interrupted run; what was computed is reused.",
+        help="Continue an interrupted run; completed results are reused.",
     ),
 ]
 Force = Annotated[
@@ -87,7 +87,7 @@ class WorkOptions:
         jobs = () if self.jobs is None else ("-j", str(self.jobs))
         options = (*jobs, *self.cluster.words, *(("--json",) if self.json else ()))
         again = shlex.join(["inerter", *command, "-o", str(folder), "--resume", *options])
-        return f"; what was computed is kept. Continue with: {again}"
+        return f"; completed results are kept. Continue with: {again}"
 
 
 UNCHANGED = WorkOptions()

@@ -43,7 +43,7 @@ def reproduce(
     Parameters
     ----------
     paper
-        The name of the paper; without one, all that there are are listed.
+        Name of the paper; default: list all papers.
     """
     from inerter.cli.commands import papers
     from inerter.cli.commands import reproduce as command

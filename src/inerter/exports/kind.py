@@ -46,5 +46,5 @@ class ExportKind:
         """Contents by `make`; raises `ExportError` for an option that this kind does not take."""
         for option, text in OPTIONS.items():
             if getattr(request, option) and option not in self.takes:
-                raise ExportError(f"An export to {self.key} has no {option}: it cannot be of {text}.")
+                raise ExportError(f"An export to {self.key} does not accept {option}: it does not support {text}.")
         return self.make(request, suffix)

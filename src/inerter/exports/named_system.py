@@ -207,8 +207,8 @@ def _of_system(system: LinearSystem, form: str, title: str) -> NamedSystem:
         )
     if np.any(system.delays) or len(set(system.sources)) < len(system.inputs):
         raise ExportError(
-            "Inputs of this system share a source or arrive late, which matrices cannot say. Export the system before "
-            "with_delays(...), whose inputs are independent, and delay them in the other program."
+            "Inputs of this system share a source or are delayed, which matrices cannot represent. Export the system "
+            "before with_delays(...), whose inputs are independent, and delay them in the other program."
         )
     states, inputs, outputs = (
         tuple(map(NamedQuantity, names)) for names in (system.states, system.inputs, system.outputs)

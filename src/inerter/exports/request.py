@@ -115,7 +115,9 @@ class ExportSpec:
                 refuse_notes(notes)
             if made.network is None:
                 what = "is rigid" if made.rigid else "carries no force"
-                raise ExportError(f"{name!r} {what} without friction and with closed gaps. Export one with more in it.")
+                raise ExportError(
+                    f"{name!r} {what} without friction and with closed gaps, so there is nothing to export."
+                )
             found[name] = made.network
         return found, notes
 
@@ -126,13 +128,13 @@ class ExportSpec:
             return None
         given = list(self.frequencies) if isinstance(self.frequencies, Sequence | np.ndarray) else [self.frequencies]
         if not given or not all(is_number(one) and one > 0.0 for one in given):
-            raise ExportError(f"Frequencies are positive numbers of Hz, got {self.frequencies!r}.")
+            raise ExportError(f"Frequencies must be positive numbers of Hz, got {self.frequencies!r}.")
         return np.asarray(given, dtype=float)
 
     def _vehicle(self, wanted: str) -> Vehicle:
         """The exported object as a vehicle; raises `ExportError` if it is none."""
         if isinstance(self.of, type) or not callable(getattr(self.of, "mechanism", None)):
-            raise ExportError(f"An export to {self.to} is one of {wanted}, got {type(self.of).__name__}.")
+            raise ExportError(f"An export to {self.to} requires {wanted}, got {type(self.of).__name__}.")
         found: Any = self.of
         vehicle: Vehicle = found
         return vehicle

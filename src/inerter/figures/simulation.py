@@ -117,7 +117,7 @@ def simulation_figure(result: SimulationResult, window: Window) -> Figure:
     inside = (run.time >= window[0]) & (run.time <= window[1])
     if np.sum(inside) < 2:
         raise StudyError(
-            f"The window from {format_range(*window, 's', 6)} holds less than two samples of those from "
+            f"The window from {format_range(*window, 's', 6)} contains fewer than two of the samples from "
             f"{format_range(run.time[0], run.time[-1], 's', 6)}."
         )
     rig = result.on_rig

@@ -250,5 +250,5 @@ def on_road(
     if isinstance(index.road, Road) and not mechanism.roads:
         raise PerformanceIndexError(f"{index.symbol} requires a road, and this mechanism has no tyre. Add a tyre.")
     if not outputs:
-        raise PerformanceIndexError(f"The mechanism does not say which outputs {index.symbol} is about. Set {where}.")
+        raise PerformanceIndexError(f"The mechanism does not define the outputs of {index.symbol}. Set {where}.")
     return IndexDefinition(outputs, combination, index.road, index.unit, filter)

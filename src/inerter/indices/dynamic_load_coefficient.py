@@ -53,6 +53,8 @@ class DynamicLoadCoefficient:
         carried = {of_mount(tyre)[0]: at_rest[tyre.name] for tyre in mechanism.tyres}
         unknown = ", ".join(output.output for output in measured if output.output not in carried)
         if unknown:
-            raise PerformanceIndexError(f"A load coefficient is about tyres, and measures.tyre_load has {unknown}.")
+            raise PerformanceIndexError(
+                f"A load coefficient requires tyre loads, but measures.tyre_load has {unknown}."
+            )
         outputs = tuple(replace(output, weight=output.weight / carried[output.output]) for output in measured)
         return on_road(self, mechanism, outputs, "measures.tyre_load")

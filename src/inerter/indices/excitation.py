@@ -100,7 +100,7 @@ class RoadVelocity(FormerNames):
             if not road.side:
                 raise PerformanceIndexError(
                     f"The road has two tracks with a coherence, and {road.name!r} is on neither of them. Set "
-                    f'track = "left" or "right", or leave the coherence out.'
+                    f'side = "left" or "right" (in files track), or leave the coherence out.'
                 )
             for (source, shape), right in zip(parts.items(), (1.0, -1.0), strict=True):
                 if shape is not None:
@@ -129,7 +129,9 @@ class WhiteForce(FormerNames):
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str):
-            raise PerformanceIndexError(f"A white force has the name of a force of the mechanism, got {self.name!r}.")
+            raise PerformanceIndexError(
+                f"A white force requires the name of a force of the mechanism, got {self.name!r}."
+            )
         check_positive(PerformanceIndexError, "The intensity of a white force", self.intensity, "N^2/Hz")
 
     @property

@@ -52,7 +52,7 @@ class LoadCarrying:
         measures = mechanism.measures
         if measures.load_input is None or measures.load_output is None:
             raise PerformanceIndexError(
-                "The mechanism does not say which force and displacement load carrying is about. "
+                "The mechanism does not define the force and the displacement of load carrying. "
                 "Set measures.load_input and measures.load_output."
             )
         return IndexDefinition(

@@ -99,7 +99,7 @@ def measured_road(spectrum: RoadSpectrum, speed: float) -> MeasuredRoad:
     True
     """
     if not isinstance(spectrum, RoadSpectrum):
-        raise PerformanceIndexError(f"A measured road is that of road_spectrum(profile), got {spectrum!r}.")
+        raise PerformanceIndexError(f"A measured road requires road_spectrum(profile), got {spectrum!r}.")
     check_positive(PerformanceIndexError, "The speed over a measured road", speed, "m/s")
     if not _SLOPES[0] < spectrum.waviness < _SLOPES[1]:
         raise PerformanceIndexError(
@@ -130,7 +130,7 @@ def _power_law(power: float, ends: tuple[float, float], unit: float) -> Filter:
                 return Filter([float(c) / math.sqrt(level) for c in found.numerator], found.denominator)
     band = format_range(ends[0] / unit * N0, ends[1] / unit * N0, "cycle/m")
     raise PerformanceIndexError(
-        f"No filter follows a line from {band}. Fit "
+        f"No filter approximates the fitted PSD from {band}. Fit "
         f"the PSD over a narrower band: road_spectrum(profile, lowest=..., highest=...)."
     )
 

@@ -40,15 +40,16 @@ class PeakResponse:
             "input", "A force, a road (its displacement) or NAME_velocity of a road.", '"sprung_force"'
         )
     )
-    output: str = field(metadata=typed_field("output", "What responds.", '"sprung_displacement"'))
+    output: str = field(metadata=typed_field("output", "Output of the response.", '"sprung_displacement"'))
     filter: Given = field(
         default=None,
         metadata=typed_field(
-            "filter", "On the output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
+            "filter", "Filter of the output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
         ),
     )
     amplitude: float | None = field(
-        default=None, metadata=typed_field("amplitude", "Of the sinusoidal input, for friction and gaps.", '"1 kN"')
+        default=None,
+        metadata=typed_field("amplitude", "Amplitude of the sinusoidal input, for friction and gaps.", '"1 kN"'),
     )
     symbol = "peak-response"
     title = "peak response"

@@ -37,9 +37,7 @@ class RandomResponse:
     5.0
     """
 
-    outputs: Weights = field(
-        metadata=typed_field("outputs", "What responds: outputs with their weights.", "{ tyre_load = 1 }")
-    )
+    outputs: Weights = field(metadata=typed_field("outputs", "Outputs with their weights.", "{ tyre_load = 1 }"))
     excitation: Road | Excitation = field(
         metadata=typed_field(
             "excitation",
@@ -50,7 +48,9 @@ class RandomResponse:
     filter: Given = field(
         default=None,
         metadata=typed_field(
-            "filter", "On every output; none if left out.", "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }"
+            "filter",
+            "Filter of every output; none if left out.",
+            "{ numerator = [1.0, 0.0], denominator = [1.0, 0.5] }",
         ),
     )
     symbol = "random-response"

@@ -136,9 +136,7 @@ class OverConditions(OfIndex):
 
     def __post_init__(self) -> None:
         if not is_index(self.index):
-            raise PerformanceIndexError(
-                f"Expected an index such as RideComfort(road) to take over conditions, got {self.index!r}."
-            )
+            raise PerformanceIndexError(f"Conditions require an index such as RideComfort(road), got {self.index!r}.")
 
     @property
     def title(self) -> str:

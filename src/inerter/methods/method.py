@@ -318,7 +318,7 @@ def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str,
     check_known(values, free)
     missing = [name for name in free if name not in values]
     if missing:
-        raise DesignError(f"Give values for {', '.join(missing)} too: every free value of the design needs some.")
+        raise DesignError(f"Values for {', '.join(missing)} missing; every free value of the design requires some.")
     arrays: dict[str, Array] = {}
     for name, given in values.items():
         try:
@@ -334,6 +334,6 @@ def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str,
     lengths = {array.size for array in arrays.values() if array.ndim == 1}
     if len(lengths) > 1:
         sizes = ", ".join(f"{name}: {array.size}" for name, array in arrays.items())
-        raise DesignError(f"The values must be as many for every free value, got {sizes}.")
+        raise DesignError(f"Every free value must have the same number of values, got {sizes}.")
     length = lengths.pop() if lengths else 1
     return {name: np.broadcast_to(arrays[name], (length,)).copy() for name in free}

@@ -63,7 +63,7 @@ class StaticStiffness:
     def _network(self, mechanism: Mechanism) -> Network:
         mounts = {mount.name: mount.network for mount in mechanism.mounts()}
         if self.mount not in mounts:
-            raise PerformanceIndexError(f"Nothing is mounted as {self.mount!r} (there are: {', '.join(mounts)}).")
+            raise PerformanceIndexError(f"Unknown mount {self.mount!r}; available: {', '.join(mounts)}.")
         return mounts[self.mount]
 
 

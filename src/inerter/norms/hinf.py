@@ -118,7 +118,7 @@ def _merge(system: LinearSystem) -> LinearSystem:
         if np.ptp(delays) > 0.0:
             raise LinearSystemError(
                 f"The H-infinity norm needs the inputs of {source!r} to arrive together, but they are "
-                f"{format_quantity(float(np.ptp(delays)), 's', 6)} apart. Choose one of them with select(inputs=...)."
+                f"{format_quantity(float(np.ptp(delays)), 's', 6)} apart. Choose one with subsystem(inputs=...)."
             )
     merge = merge.reshape(len(system.sources), len(sources))
     return LinearSystem(system.A, system.B @ merge, system.C, system.D @ merge)

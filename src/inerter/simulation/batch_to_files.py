@@ -75,7 +75,9 @@ def simulate_to_files(
         map_items(partial(_write, names, same), items, progress=progress)
     missing = next((file for row in files for file in row if not file.is_file()), None)
     if missing is not None:
-        raise WorkError(f"{str(missing)!r} was written where this process cannot see it: name a folder that all share.")
+        raise WorkError(
+            f"{str(missing)!r} was written to a folder that this process cannot read. Name a shared folder."
+        )
     return files
 
 
@@ -97,7 +99,9 @@ def _empty(folder: str | Path) -> Path:
     except OSError as error:
         raise _unwritten(folder, error) from error
     if holds is not None:
-        raise SimulationError(f"The folder {str(folder)!r} holds {holds.name!r} already: name a new or an empty one.")
+        raise SimulationError(
+            f"The folder {str(folder)!r} already contains {holds.name!r}. Name a new or an empty one."
+        )
     return place
 
 

@@ -226,8 +226,8 @@ def check_elements(system: PiecewiseSystem) -> None:
     """Raises `SimulationError` if there are more frictions and gaps than combinations of states can be numbered."""
     if len(system.nonlinear) > MOST_ELEMENTS:
         raise SimulationError(
-            f"The event-driven integrator takes up to {MOST_ELEMENTS} frictions and gaps, got {len(system.nonlinear)}. "
-            f'Take integrator="time-stepping", or join those that always act together.'
+            f"The event-driven integrator supports up to {MOST_ELEMENTS} frictions and gaps, got "
+            f'{len(system.nonlinear)}. Use integrator="time-stepping", or join those that always act together.'
         )
 
 

@@ -149,7 +149,7 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
         return {}
     found = given if isinstance(given, Mapping) else dict.fromkeys(names, given)
     if given is not None and not names:
-        raise SimulationError(f"The mechanism has nothing that takes {what}=.")
+        raise SimulationError(f"The mechanism has no input for {what}=.")
     for name, signal in found.items():
         if name not in names:
             raise SimulationError(f"Unknown input {name!r} for {what}=; available: {_format_names(names)}.")
@@ -171,7 +171,7 @@ def _delay(distance: float, signal: Signal | None, speed: float | None, name: st
     if known is None:
         raise SimulationError(
             f"The road reaches {name!r} {format_quantity(distance, 'm', 6)} later, but neither the signal nor "
-            f"simulate(..., speed=...) says how fast the vehicle is."
+            f"simulate(..., speed=...) states the speed of the vehicle."
         )
     check_positive(SimulationError, "The speed", known, "m/s")
     return distance / known

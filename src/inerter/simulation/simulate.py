@@ -94,8 +94,8 @@ def simulate(
     `initial`: `"rest"`, as without it, unstrained over the roads as they are at t = 0; `"preload"`, in static
     equilibrium under the forces as they are at t = 0; `"periodic"`, the steady state of a periodic input, repeated
     until the state repeats (`run.repetition` says how well), with one period as default duration; a trajectory, to go
-    on from its end; or an array, the state itself. `energy` requests the energy balance, which takes ten to twenty times
-    longer.
+    on from its end; or an array, the state itself. `energy` requests the energy balance, which takes ten to
+    twenty times longer.
 
     Raises `SimulationError` for inputs that are missing, end too early or do not fit the step, and for a run that
     would need more than `memory_limit` [bytes]; `SignalError`, `MechanismError` and `DesignError` as signals and

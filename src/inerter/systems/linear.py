@@ -176,7 +176,7 @@ def _labels(what: str, given: object, letter: str, count: int) -> tuple[str, ...
     if not names:
         return tuple(f"{letter}{i + 1}" for i in range(count))
     if len(names) != count or len(set(names)) != count:
-        raise LinearSystemError(f"The system has {count} {what}, which need as many different names, got {names}.")
+        raise LinearSystemError(f"The {count} {what} of the system require as many different names, got {names}.")
     return tuple(names)
 
 
@@ -186,5 +186,5 @@ def _positions(what: str, names: Sequence[str] | str | None, known: tuple[str, .
     wanted = check_names(f"{what}s", names)
     for name in wanted:
         if name not in known:
-            raise LinearSystemError(f"Unknown {what} {name!r} (there are: {', '.join(known) or 'none'}).")
+            raise LinearSystemError(f"Unknown {what} {name!r}; available: {', '.join(known) or 'none'}.")
     return [known.index(name) for name in wanted]

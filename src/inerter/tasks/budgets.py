@@ -133,7 +133,7 @@ class Budgets(Task[BudgetAnswer]):
         used = elements_used(study)
         for name in study.budgets:
             if name not in study.elements:
-                missing = f"{quote_value(name)} is not in [elements], where there are {some(study.elements)}"
+                missing = f"{quote_value(name)} is not in [elements]; available: {some(study.elements)}"
                 yield at(place, fault=missing, hint=nearest(name, study.elements))
             elif isinstance(study.elements[name].value, Tied):
                 yield at(place, fault=f"{name} is tied to others", expected="an element that is not tied")

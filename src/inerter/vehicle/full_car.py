@@ -73,16 +73,20 @@ class FullCar(VehicleModel):
         metadata=quantity("N/m", "Vertical stiffness of one rear tyre.", "220 kN/m", may_be_free=True, usual=(2e3, 5e7))
     )
     distance_front: float = field(
-        metadata=quantity("m", "From the centre of mass to the front axle.", "1.2 m", usual=(0.05, 20.0))
+        metadata=quantity("m", "Distance from the centre of mass to the front axle.", "1.2 m", usual=(0.05, 20.0))
     )
     distance_rear: float = field(
-        metadata=quantity("m", "From the centre of mass to the rear axle.", "1.5 m", usual=(0.05, 20.0))
+        metadata=quantity("m", "Distance from the centre of mass to the rear axle.", "1.5 m", usual=(0.05, 20.0))
     )
     track_front: float = field(
-        metadata=quantity("m", "From the left front wheel and strut to the right.", "1.52 m", usual=(0.05, 6.0))
+        metadata=quantity(
+            "m", "Distance between the left and right front wheels and struts.", "1.52 m", usual=(0.05, 6.0)
+        )
     )
     track_rear: float = field(
-        metadata=quantity("m", "From the left rear wheel and strut to the right.", "1.5 m", usual=(0.05, 6.0))
+        metadata=quantity(
+            "m", "Distance between the left and right rear wheels and struts.", "1.5 m", usual=(0.05, 6.0)
+        )
     )
     front: Network = field(metadata=mount("Between body and each front wheel."))
     rear: Network = field(metadata=mount("Between body and each rear wheel."))

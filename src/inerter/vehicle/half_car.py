@@ -58,10 +58,10 @@ class HalfCar(VehicleModel):
         metadata=quantity("N/m", "Vertical stiffness of the rear tyre.", "100 kN/m", may_be_free=True, usual=(2e3, 1e8))
     )
     distance_front: float = field(
-        metadata=quantity("m", "From the centre of mass to the front axle.", "0.775 m", usual=(0.05, 20.0))
+        metadata=quantity("m", "Distance from the centre of mass to the front axle.", "0.775 m", usual=(0.05, 20.0))
     )
     distance_rear: float = field(
-        metadata=quantity("m", "From the centre of mass to the rear axle.", "1.265 m", usual=(0.05, 20.0))
+        metadata=quantity("m", "Distance from the centre of mass to the rear axle.", "1.265 m", usual=(0.05, 20.0))
     )
     front: Network = field(metadata=mount("Between body and front wheel."))
     rear: Network = field(metadata=mount("Between body and rear wheel."))

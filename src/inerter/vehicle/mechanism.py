@@ -352,10 +352,10 @@ def _check_measures(measures: object) -> None:
     if not isinstance(measures, PerformanceOutputs):
         raise MechanismError(f"The measures of a mechanism must be PerformanceOutputs(...), got {measures!r}.")
     if not isinstance(measures.comfort, tuple) or not isinstance(measures.tyre_load, tuple):
-        raise MechanismError(f"The outputs of measures must be tuples of Weighted(...), got {measures!r}.")
+        raise MechanismError(f"The outputs of measures must be tuples of OutputWeight(...), got {measures!r}.")
     for output in (*measures.comfort, *measures.tyre_load):
         if not isinstance(output, OutputWeight) or not isinstance(output.output, str) or not is_number(output.weight):
-            raise MechanismError(f"A measure must be Weighted(output name, number), got {output!r}.")
+            raise MechanismError(f"A measure must be OutputWeight(output name, number), got {output!r}.")
 
 
 def _check_names(mechanism: Mechanism) -> None:
@@ -396,7 +396,7 @@ def _check_numbers(mechanism: Mechanism) -> None:
             )
         if road.side not in TRACKS:
             raise MechanismError(
-                f'The track of road {road.name!r} must be "left" or "right", or "" for a single track, '
+                f'The side of road {road.name!r} must be "left" or "right", or "" for a single track, '
                 f"got {road.side!r}."
             )
 

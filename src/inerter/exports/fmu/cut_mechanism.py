@@ -218,10 +218,10 @@ def _check(reactive: Sequence[Branch], prescribed: int) -> None:
     for branch in reactive:
         what = f"{branch.element.key} {branch.label!r}"
         if np.any(branch.roads):
-            raise ExportError(f"An FMU has no {what} on the road itself. Put it between moving parts.")
+            raise ExportError(f"An FMU does not support the {what} on the road itself. Put it between moving parts.")
         if not np.any(branch.nodes[prescribed:]):
             raise ExportError(
-                f"The {what} is between the ends of the strut itself, so that only a host could say when it "
+                f"The {what} is between the ends of the strut itself, so that only a host could determine when it "
                 "sticks or touches. Export the whole vehicle, or give it an elastic shaft."
             )
 

@@ -66,8 +66,8 @@ def libraries(sources: Mapping[str, str], main: str, others: Sequence[str]) -> I
         wanted = [one for one in wanted if one is not OWN]
     elif not wanted:
         raise ExportError(
-            "FMUs are made by the compiler of the system on Linux on x86-64 only. Export the design there, or name "
-            'platforms, for which pip install "inerter[fmu]" brings a compiler.'
+            "The compiler of the system builds FMUs on Linux on x86-64 only. Export the design there, or name "
+            'platforms, for which pip install "inerter[fmu]" provides a compiler.'
         )
     for each in wanted:
         yield each, _compile([*_compiler_of_all(), "-target", each.target, "-s", *_OPTIONS], sources, main)
@@ -76,13 +76,13 @@ def libraries(sources: Mapping[str, str], main: str, others: Sequence[str]) -> I
 def _own_compiler() -> str:
     compiler = shutil.which(os.environ.get("CC", "cc"))
     if compiler is None:
-        raise ExportError("An FMU needs a C compiler, and there is none called cc. Install one, or name it in CC.")
+        raise ExportError("An FMU requires a C compiler; cc not found. Install one, or name it in CC.")
     return compiler
 
 
 def _compiler_of_all() -> list[str]:
     if importlib.util.find_spec("ziglang") is None:
-        raise ExportError('For other platforms than this one install their compiler: pip install "inerter[fmu]".')
+        raise ExportError('FMUs for other platforms require their compiler: pip install "inerter[fmu]".')
     return [sys.executable, "-m", "ziglang", "cc"]
 
 

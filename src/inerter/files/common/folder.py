@@ -175,7 +175,7 @@ def _check(intent: WriteMode) -> None:
     """Raises `StudyError` for an intent that cannot be met; reads only."""
     folder = intent.folder
     if intent.resume and intent.force:
-        raise StudyError("--resume keeps what the folder holds and --force replaces it: give one of them.")
+        raise StudyError("--resume keeps the results in the folder, --force replaces them: give one of the two.")
     if os.path.lexists(folder) and not folder.is_dir():
         raise StudyError(f"{folder}: is a file; expected a folder for the results. Choose another with -o.")
     try:
@@ -204,8 +204,8 @@ def _check_files(intent: WriteMode, known: Listing) -> None:
     read = [name for name in there if intent.force and _is_input(folder / name, intent.inputs)]
     if read:
         raise StudyError(
-            f"{folder}: {_name_list(read)} is what this command reads, and --force would replace it. "
-            f"Copy it to another place, or {_ELSEWHERE}."
+            f"{folder}: this command reads {_name_list(read)}, and --force would replace it. "
+            f"Copy it to another folder, or {_ELSEWHERE}."
         )
 
 

@@ -144,8 +144,8 @@ def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[
     try:
         unknown = [name for name in names(expression) if name not in elements]
         for name in unknown:
-            present = f"where there are {some(elements)}" if elements else "which is empty"
-            missing = f"{quote_value(name)} is not in [elements], {present}"
+            present = f"; available: {some(elements)}" if elements else ", which is empty"
+            missing = f"{quote_value(name)} is not in [elements]{present}"
             yield at(place, got=quote_value(expression), fault=missing, hint=nearest(name, elements))
         if not unknown:
             network(expression, **elements)

@@ -93,11 +93,11 @@ def check_unchanged(folder: Path, name: str) -> None:
     """Raises `StudyError` unless a folder of results has the file as it was written; one without a list is believed."""
     path, known = folder / name, listing(folder)
     if not path.is_file():
-        raise StudyError(f"{folder}: has no {name}, so that it holds no results. Give the folder of a run that ended.")
+        raise StudyError(f"{folder}: has no {name}, so it is not a folder of results. Give that of a completed run.")
     if known is not None and (name not in known.files or digest(path) not in known.files[name].digests):
         raise StudyError(
-            f"{path}: was not written by inerter, or was edited since, so that what the folder says is not of one "
-            "study. Run the changed study into another folder with `inerter run`, or undo the change."
+            f"{path}: was not written by inerter, or was edited since, so the folder may mix results of different "
+            "studies. Run the changed study into another folder with `inerter run`, or undo the change."
         )
 
 

@@ -195,7 +195,7 @@ _OUTPUTS = OutputsCodec()
 
 @keyed_dataclass
 class StrutTable:
-    """Between two ports; without a lower one it is on the ground."""
+    """Network between two ports; default of the lower one: the ground."""
 
     upper: Mapping[str, float] = key(
         PORT, "Upper port: coordinates with their lever arms.", 'upper = { body = 1, pitch = "1.2 m" }'
@@ -208,7 +208,7 @@ class StrutTable:
 
 @keyed_dataclass
 class TyreTable:
-    """Between a port and a road."""
+    """Network between a port and a road."""
 
     port: Mapping[str, float] = key(
         PORT, "Port that the tyre carries: coordinates with their lever arms.", "port = { wheel = 1 }"
@@ -248,7 +248,7 @@ class MeasureTable:
         "tyre_load = { wheel_load = 1 }",
         default=None,
     )
-    load_input: str | None = key(TEXT, "The force of load carrying.", 'load_input = "load"', default=None)
+    load_input: str | None = key(TEXT, "Force of load carrying J5.", 'load_input = "load"', default=None)
     load_output: str | None = key(
         OUTPUT_NAME, "Displacement output of load carrying J5.", 'load_output = "body_displacement"', default=None
     )

@@ -50,7 +50,7 @@ class IdentificationRequest:
         known = ", ".join((*MODELS, CHOOSE))
         if self.name is None:
             raise StudyError(
-                f"Which model? Name one of {known} with --model, or write [model] and [elements] in a --config."
+                f"Model missing. Name one of {known} with --model, or write [model] and [elements] in a --config."
             )
         if self.name == CHOOSE:
             return {name: _replace_elements(model, self.elements) for name, model in MODELS.items()}

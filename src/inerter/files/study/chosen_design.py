@@ -120,7 +120,7 @@ def _choose(what: str, given: str | None, known: list[str], source: Path) -> str
 def _point(point: int | None, count: int, study: Study, source: Path) -> int:
     if not study.sweeps:
         if point is not None:
-            raise StudyError(f"{source}: nothing is swept, so that it has no points. Leave --point out.")
+            raise StudyError(f"{source}: has no sweep, and so no points. Leave --point out.")
         return 0
     if point is None or not 1 <= point <= count:
         given = "" if point is None else f", got {point}"
@@ -147,7 +147,7 @@ def _read(folder: Path, study: Study, case: Case) -> dict[str, float]:
         row = found.sel(layout=case.layout, index=case.index).isel(place)
         values = {str(name): float(value) for name, value in zip(row["parameter"].values, row.values, strict=True)}
     except (KeyError, IndexError, ValueError):
-        raise StudyError(f"{folder}: its results are not of its study. Run the study again.") from None
+        raise StudyError(f"{folder}: the results do not belong to the study in it. Run the study again.") from None
     known = study.free_units
     if any(np.isnan(values.get(name, np.nan)) for name in known if name in study.design(case.layout).free_values()):
         raise StudyError(f"{folder}: has no values for {case.name}; its status there has the reason.")

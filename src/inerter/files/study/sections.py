@@ -220,7 +220,7 @@ class RealInerters:
     )
     best: int = key(
         whole(1, 1000),
-        "Number of the best networks, besides the best of each number of elements.",
+        "Number of the best networks, in addition to the best of each number of elements.",
         "best = 3",
         default=3,
     )

@@ -41,7 +41,7 @@ def sweeps_of(study: Study, entries: Mapping[str, Entry]) -> tuple[tuple[Sweep, 
                 with_numbers(study, [(sweep.place, value)])
             sweeps.append(sweep)
     if len({sweep.place for sweep in sweeps}) < len(sweeps):
-        problems.append(at(_PLACE, got=f"{sweeps[0].label} twice", expected="two places"))
+        problems.append(at(_PLACE, got=f"{sweeps[0].label} twice", expected="two different key paths"))
     if (points := prod(len(sweep.values) for sweep in sweeps)) > MOST_POINTS:
         problems.append(at(_PLACE, got=f"{points} points", expected=f"at most {MOST_POINTS} in all"))
     return tuple(sweeps), problems
@@ -72,9 +72,9 @@ def unknown_place(study: Study, place: Place) -> EntryError:
             got=quote_value(place.label), fault="a free network has no value", expected="an element or another number"
         )
     if element_at(place) == place.key:
-        missing = f"{quote_value(place.key)} is not in [elements], where there are {some(study.elements)}"
+        missing = f"{quote_value(place.key)} is not in [elements]; available: {some(study.elements)}"
         return EntryError(fault=missing, hint=nearest(place.key, places(study)))
-    expected = "a place of a number, such as road.speed or vehicle.sprung_mass, or an element"
+    expected = "a key path such as road.speed or vehicle.sprung_mass, or an element"
     hint = nearest(place.label, places(study))
     return EntryError(fault=f"this study has no number at {place.label}", expected=expected, hint=hint)
 
@@ -140,7 +140,7 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
                 problems += _not_followed(study, where, {place.label: numbers[place.label]})
         if entry.name and entry.name in [known.name for known in conditions]:
             got = f"{entry.name!r}, the name of another condition"
-            problems.append(at((f"{_CONDITIONS}[{i}]", "name"), got=got, expected="a name that tells it apart"))
+            problems.append(at((f"{_CONDITIONS}[{i}]", "name"), got=got, expected="a different name"))
         conditions.append(StudyCondition(numbers, entry.share, entry.name or ""))
     for i, condition in enumerate(conditions, start=1):
         for label in condition.numbers.keys() & study.swept_labels:

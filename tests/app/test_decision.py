@@ -202,6 +202,7 @@ def test_the_digest_of_a_problem_is_that_of_its_optimum_until_the_problem_is_ano
     assert digests(other(elements={"c": "2 kN s/m", "b": DOCUMENT["elements"]["b"]}))[0] == ""  # nothing may vary
 
 
+@pytest.mark.campaign
 def test_designs_of_sweeps_and_fronts_solve_the_problems_of_their_studies(client: TestClient) -> None:
     elements = {"k": "20 kN/m", "c": DOCUMENT["elements"]["c"]}
     study = {**DOCUMENT, "elements": elements, "layouts": {"S1": "k | c"}}

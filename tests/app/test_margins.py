@@ -167,6 +167,7 @@ def test_a_tolerance_of_friction_by_a_norm_is_not_nought(client: TestClient) -> 
         assert "expected-value" in one["message"]
 
 
+@pytest.mark.campaign
 def test_a_report_of_fixed_designs_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
     """Byte for byte: the study of these designs is written and run."""
     designs = [{"layout": name, "values": values} for name, values in VALUES.items()]
@@ -178,7 +179,7 @@ def test_a_report_of_fixed_designs_is_that_of_the_command_line(client: TestClien
     assert page.startswith(b"<!DOCTYPE html>")
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_report_of_a_study_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
     limits = example_tables("limits")
     page, _ = _page_of_job(client, study=limits)

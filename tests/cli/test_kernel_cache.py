@@ -112,6 +112,7 @@ def test_a_cache_is_used_and_its_files_that_were_cut_short_are_made_anew(tmp_pat
     assert all(path.stat().st_size > 100 for path in cache.rglob("*.nbi"))
 
 
+@pytest.mark.campaign
 def test_a_cache_that_is_deleted_while_a_process_works_is_filled_again(tmp_path: Path) -> None:
     """A server runs for days, and somebody clears the folder of caches."""
     (tmp_path / "small.py").write_text(KERNEL, encoding="utf-8")
@@ -131,6 +132,7 @@ print(small.doubled(21.0), [path.suffix for path in sorted(folder.glob("*.*"))])
     assert found.stdout == "42.0 ['.nbc', '.nbi']\n"
 
 
+@pytest.mark.campaign
 def test_another_installation_of_the_same_sources_uses_the_cache(tmp_path: Path) -> None:
     """As the two commands of the README make two: for use, and to work on the package."""
     for name, compiles in (("one", True), ("other", False)):
@@ -228,6 +230,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.campaign
 def test_ctrl_c_while_the_compiler_hands_over_its_code_is_an_interrupt(tmp_path: Path, temporary: Path) -> None:
     """Python can only ignore it there, and the compiler then says that it has no code."""
     (temporary.parent / "small.py").write_text(KERNEL, encoding="utf-8")

@@ -92,6 +92,7 @@ step = "1 ms"
 """
 
 
+@pytest.mark.campaign
 def test_motions_are_plots(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """Of a file or of its results: the same motion; the loop has one output over another."""
     monkeypatch.chdir(tmp_path)

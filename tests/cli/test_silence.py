@@ -268,7 +268,7 @@ def test_no_remaining_time_is_given_without_a_basis(seconds: float, monkeypatch:
     assert pace.words() != ""
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_run_tells_where_it_is_within_a_design(tmp_path: Path) -> None:
     from study_text import study_text  # noqa: PLC0415
 
@@ -290,6 +290,7 @@ def test_a_run_tells_where_it_is_within_a_design(tmp_path: Path) -> None:
     assert max(between) < 3.0 * SILENCE
 
 
+@pytest.mark.campaign
 def test_a_workbench_that_waits_for_the_page_says_nothing(tmp_path: Path) -> None:
     """It is ready once it has said its link, however long nobody asks for anything."""
     code = f"from inerter.cli import main, pulse; pulse._SILENCE /= {FASTER}; pulse._LOOK /= {FASTER}; main.main()"

@@ -39,6 +39,7 @@ LONG = {
     "tutorial-rig.md",
     "tutorial-network.md",
 }  # pages whose blocks take long
+LONGEST = ["cluster.md", "staged-protocol.md"]  # of these the parts have campaigns of their own
 WRITTEN = {"exports.md": "car.mo", "study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
 
 
@@ -59,7 +60,7 @@ def registries() -> Iterator[None]:
         it.INDICES.remove(it.INDICES[key])
 
 
-@pytest.mark.parametrize("page", sampled(PYTHON, [page for page in PYTHON if page not in LONG]))
+@pytest.mark.parametrize("page", sampled(PYTHON, [page for page in PYTHON if page not in LONG], LONGEST))
 @pytest.mark.usefixtures("folder", "registries")
 def test_python_gives_the_figures_beside_it(page: str) -> None:
     """All blocks of a page one after the other, as a reader would try them."""
@@ -186,7 +187,9 @@ SELDOM = [  # those that take long, and of which a part, or what is much the sam
     "inerter reproduce wang-su-2008 --only methods",
     "inerter reproduce wang-su-2008 --only rig",
     FITTED,
+    SHOWN,
     SLOW,
+    "inerter export van-results --layout S3 --index J1 --to matlab --linear -o van.m",
     "inerter identify bench.csv --model ball-screw",
     "inerter identify slow.tdms fast.tdms --model ball-screw --unit force=kgf -o bench",
     'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2',

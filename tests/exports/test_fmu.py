@@ -71,7 +71,7 @@ def simulated(vehicle: object, signal: it.Signal, step: float, duration: float, 
 @pytest.mark.parametrize(
     ("kind", "number"),
     sampled(
-        [(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2)], often=[("fmu3", 1)], kept=3
+        [(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2)], often=[("fmu3", 1)], kept=2
     ),
 )
 def test_fmpy_has_nothing_against_it(kind: str, number: int) -> None:
@@ -89,7 +89,7 @@ def test_it_moves_as_the_simulation(kind: str, step: float, masters: list[Master
     assert error(found, simulated(CAR, signal, step, 1.0, SHOWN)) < 1e-11
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2, 4), kept=5))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2,), often=(4,), kept=2))
 def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = design(number), 1e-3
     signal, height, slope = road(0.5, step, number)
@@ -116,7 +116,8 @@ ROUGH = {  # struts, with the largest error of an output against the event-drive
     ("kind", "name"),
     sampled(
         [(kind, name) for kind in KINDS for name in ROUGH],
-        [("fmu", "backlash and friction"), ("fmu3", "a stop")],
+        [("fmu", "backlash and friction")],
+        often=[("fmu3", "a stop")],
         kept=4,
     ),
 )
@@ -173,7 +174,7 @@ def rough(number: int) -> it.Mechanism:
     )
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2,), often=(9,), kept=5))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], often=(2, 9), kept=2))
 def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = rough(number), 1e-3
     signal, height, slope = road(0.5, step, number)
@@ -236,7 +237,7 @@ def test_a_state_is_restored_in_another_instance(kind: str, masters: list[Master
     assert np.array_equal(driven(other, height, slope, 1e-3, SHOWN), again)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", sampled(KINDS, KINDS[:1]))
 def test_steps_of_any_length(kind: str, masters: list[Master], tmp_path: Path) -> None:
     """A road velocity that is one cubic: the exact flow does not depend on the steps."""
     master = opened(masters, CAR, kind, tmp_path)
@@ -310,7 +311,7 @@ def test_a_linear_mechanism_on_moving_ground(kind: str, masters: list[Master], t
     assert "primary_mass" not in master.references
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", sampled(KINDS, KINDS[-1:]))
 @pytest.mark.parametrize("strut", [K | C - B, ROUGH["backlash and friction"][0]], ids=["linear", "switching"])
 def test_its_sources_alone_make_the_same_library(strut: it.Network, kind: str, tmp_path: Path) -> None:
     """By a compiler that warns of everything, as C99."""

@@ -127,6 +127,7 @@ def test_every_element_is_placed_once_in_order_and_boxes_do_not_meet(network):
     check_places(drawing)
 
 
+@pytest.mark.campaign
 @settings(max_examples=25)
 @given(networks((Spring, Damper, Inerter), depth=3), st.floats(0.5, 2.0))
 def test_what_touches_in_the_drawing_is_the_network(network, s):
@@ -236,6 +237,7 @@ def test_networks_wider_than_a_page_make_it_wider_and_others_share_rows():
     assert 1.5 * one[1] < wide[1]
 
 
+@pytest.mark.campaign
 def test_files_are_written_and_the_same_every_time(tmp_path):
     drawn = FIGURES["catalogue"]
     first, second = (draw_networks(drawn, tmp_path / run, "layouts") for run in "12")

@@ -116,6 +116,7 @@ def test_gain_and_delay_of_the_sensor(kind):
     assert fit.parameters["f"].value == pytest.approx(10.0, rel=0.02)
 
 
+@pytest.mark.campaign
 def test_a_reversed_load_cell_is_noticed():
     rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), seed=6, reversed=True)
     turned = it.identify([rig.run(it.cosine(1e-3, 3.0), 1.0)], FREE_FLYWHEEL, seed=0, starts=8)
@@ -123,6 +124,7 @@ def test_a_reversed_load_cell_is_noticed():
     assert turned.parameters["b"].value == pytest.approx(113.0, rel=0.02)
 
 
+@pytest.mark.campaign
 def test_times_that_a_file_rounds_are_even_ones():
     """2048 samples a second have intervals of 0.48828125 ms, which seven decimals show as 0.4882 and 0.4883 ms."""
     true = it.Inerter(113.0) | it.Friction(10.0)

@@ -77,6 +77,7 @@ def test_of_a_curved_model_they_end_where_the_sum_of_squares_has_risen(model, tr
         assert WIDER[0] <= (end - best) / (expected - best) <= WIDER[1]
 
 
+@pytest.mark.campaign
 def test_they_hold_the_truth_as_often_as_they_say():
     columns = np.column_stack([np.ones(TIME.size), TIME, np.sin(9.0 * TIME)])
     truth, draws = np.array([1.0, -2.0, 0.5]), 300

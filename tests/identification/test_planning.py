@@ -25,6 +25,7 @@ def solved(force_range: float | None = 981.0):  # type: ignore[no-untyped-def]
     return solution_of(record, IDEAL, FitOptions(starts=8), None)
 
 
+@pytest.mark.campaign
 def test_an_inertance_is_known_better_by_its_acceleration() -> None:
     """White noise of the cell: the standard error of log b goes as one over the acceleration, and over root length."""
     solution = solved()

@@ -117,6 +117,7 @@ def test_peak_gain_does_not_depend_on_the_period():
     assert all(a.gain >= b.gain for a, b in zip(short.peaks, short.peaks[1:], strict=False))
 
 
+@pytest.mark.campaign
 def test_intervals_cover():
     car = paper_quarter_car(series(20.0))
     several = [evaluate(car, J1, ApproximateLinear(SHORT, SHORT, realisations=4, seed=seed)) for seed in range(60)]
@@ -134,7 +135,7 @@ PRINTED = [
 ]
 
 
-@pytest.mark.parametrize(("index", "strut", "printed", "ideal", "f", "front", "rear"), sampled(PRINTED, PRINTED[1:]))
+@pytest.mark.parametrize(("index", "strut", "printed", "ideal", "f", "front", "rear"), sampled(PRINTED, PRINTED[2:]))
 def test_table_2(index, strut, printed, ideal, f, front, rear):
     car = paper_half_car(strut(f, *front), strut(f, *rear))
     estimate = evaluate(car, index, ApproximateLinear(conventions="paper2008", realisations=4))
@@ -188,7 +189,7 @@ def test_friction_alone_between_body_and_wheel():
     ("damping", "force"),
     sampled(
         [(300.0, 300.0), (300.0, 30.0), (250.0, 10.0), (100.0, 300.0), (20.0, 400.0)],
-        [(300.0, 30.0), (100.0, 300.0)],
+        [(300.0, 30.0)],
         kept=2,
     ),
 )

@@ -88,7 +88,7 @@ def check_one(seed):
         assert found.value == pytest.approx(value, rel=2e-5), output
 
 
-@pytest.mark.parametrize("seed", sampled(range(3), [0]))
+@pytest.mark.parametrize("seed", sampled(range(3), [0], kept=1))
 def test_norms_by_quadrature(seed):
     check_one(seed)
 

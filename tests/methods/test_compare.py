@@ -168,6 +168,7 @@ def test_what_does_not_scatter_has_no_error(method):
     assert found.difference.interval == (found.difference.value, found.difference.value)
 
 
+@pytest.mark.campaign
 def test_both_get_as_many_roads_as_the_one_that_needs_more():
     method = ExpectedValue(relative_error=1.3e-3, seed=3)
     alone = [it.evaluate(car, J3, method).realisations for car in (parallel(10.0), series(100.0))]

@@ -185,7 +185,7 @@ def is_damped(mechanism: it.Mechanism) -> bool:
     )
 
 
-@pytest.mark.parametrize("seed", sampled(range(100), [0], kept=4))
+@pytest.mark.parametrize("seed", sampled(range(100), [0], kept=2))
 def test_each_criterion_is_the_integral_of_its_response(seed: int) -> None:
     """On random mechanisms, 100 in all, that are damped enough for a quadrature."""
     family = list(FAMILIES)[seed % len(FAMILIES)]

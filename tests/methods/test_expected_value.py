@@ -363,7 +363,7 @@ def test_a_fast_wheel_is_not_smoothed_by_the_knots_of_the_road(seed):
         assert_near_the_norm(replace(car, strut=car.strut | Friction(1e-6)), car, index)
 
 
-@pytest.mark.parametrize("speed", [25.0, 23.7, 31.3])
+@pytest.mark.parametrize("speed", sampled([25.0, 23.7, 31.3], [23.7]))
 def test_axles_that_meet_the_road_between_knots_lose_nothing_to_them(speed):
     road, strut = Road(roughness=5e-7, speed=speed), Spring(3e4) | Damper(2e3)
     car, slipping = paper_half_car(strut, strut), paper_half_car(strut | Friction(1e-6), strut | Friction(1e-6))

@@ -146,7 +146,7 @@ def check(seed):
     return found.value / expected - 1.0, (seed, output, speed, track)
 
 
-@pytest.mark.parametrize("seed", sampled(range(8), [1, 2]))
+@pytest.mark.parametrize("seed", sampled(range(8), [1, 2], kept=3))
 def test_norms_by_quadrature(seed):
     off, case = check(seed)
     assert abs(off) < 1e-6, case

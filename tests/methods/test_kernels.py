@@ -71,7 +71,8 @@ def draw_usual(car, count, seed):
     ("name", "conventions"),
     sampled(
         product(CARS, ["exact", "paper2008"]),
-        [(name, "exact" if i % 2 else "paper2008") for i, name in enumerate(CARS)],
+        [(name, "exact" if i % 2 else "paper2008") for i, name in enumerate(CARS)][::2],
+        kept=5,
     ),
 )
 def test_many_designs_at_once_are_the_same_as_one_by_one(name, conventions):

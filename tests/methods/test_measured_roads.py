@@ -89,7 +89,7 @@ def by_quadrature(car, output, spectrum, speed):
     return rms
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), [0], kept=5))
+@pytest.mark.parametrize("seed", sampled(range(12), [0], kept=3))
 def test_the_error_bound_holds_against_the_densities_that_were_measured(seed):
     rng = np.random.default_rng([8608, seed])
     spectrum, speed = measured(rng, float(rng.uniform(1.5, 2.6))), float(rng.uniform(5.0, 40.0))

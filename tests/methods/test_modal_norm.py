@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from wang_su import paper_half_car
 
 import inerter as it
@@ -54,7 +55,7 @@ def test_they_are_the_norms_with_states_for_filters(name):
         assert np.all(np.abs(gradients[sure] - slopes[sure]) <= 1e-8 * scale)
 
 
-@pytest.mark.parametrize("name", ["half J3", "half Wk"])
+@pytest.mark.parametrize("name", sampled(["half J3", "half Wk"], ["half J3"]))
 def test_they_are_right_to_a_billionth_where_damping_is_light(name):
     car, index = QUESTIONS[name]
     objective, points = it.Norm().objective(car, index), draw(car, 12, 7)

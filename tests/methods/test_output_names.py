@@ -43,7 +43,7 @@ def answer(name, strut, method):
         return str(error)
 
 
-@pytest.mark.parametrize("kind", sampled(STRUTS, ["tiny gap"], ["weak friction"]))
+@pytest.mark.parametrize("kind", sampled(STRUTS, seldom=["weak friction"]))
 def test_every_output_means_the_same_to_every_method(kind):
     """Frictions and gaps are so small here that all methods must agree about everything else."""
     strut = STRUTS[kind]
@@ -92,7 +92,7 @@ def misspelt(rng, name):
     return [*ways, name[:i] + name[i + 1] + name[i] + name[i + 2 :]][int(rng.integers(4))]
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), [1, 3, 4, 8], kept=3))
+@pytest.mark.parametrize("seed", sampled(range(12), [4, 8], often=[1, 3], kept=1))
 def test_a_name_that_is_not_there_gets_the_same_sentence_everywhere(seed):
     rng = np.random.default_rng(seed)
     strut = [*STRUTS.values()][seed % 2]

@@ -58,7 +58,7 @@ def test_every_maximum_of_a_fine_scan_is_there(design):
         assert peak.gain == pytest.approx(gain(design(), peak.omega / (2.0 * np.pi)), rel=1e-4)
 
 
-@pytest.mark.parametrize("design", [series, backlash])
+@pytest.mark.parametrize("design", sampled([series, backlash], [series]))
 def test_only_the_ratio_of_friction_and_gap_to_force_matters(design):
     one = it.evaluate(design(1.0), LoadCarrying(800.0), SIMULATED)
     other = it.evaluate(design(2.5), LoadCarrying(2000.0), SIMULATED)

@@ -146,7 +146,7 @@ def test_gradients_are_the_slopes_of_values(index, conventions):
     assert checked >= 10
 
 
-@pytest.mark.parametrize(("axles", "twins"), sampled([(3, 0), (2, 1)], seldom=[(3, 0)]))
+@pytest.mark.parametrize(("axles", "twins"), sampled([(3, 0), (2, 1)], kept=0))
 def test_the_norm_is_the_integral_of_the_frequency_response(axles, twins):
     """By quadrature along the frequency axis: no states, and so no drift."""
     made, road = vehicle(np.random.default_rng(24), axles, twins), Road(2e-6, 20.0)

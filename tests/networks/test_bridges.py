@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from hypothesis import given
 from hypothesis import strategies as st
 from nodal import Nodal
@@ -354,7 +355,7 @@ def test_an_arm_must_be_a_network():
         Bridge(Spring(1.0), Spring(1.0), 3.0, Spring(1.0), Spring(1.0))
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", sampled(range(3), [1]))
 def test_norms_of_a_car_on_a_bridge_by_quadrature(seed):
     rng = np.random.default_rng(100 + seed)
     car = paper_quarter_car(Spring(2e4) | Bridge(*(random_network(rng, 1, 2) for _ in ARMS)) | Damper(1e3))

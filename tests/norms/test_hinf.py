@@ -113,7 +113,7 @@ def local_maxima(gain, omegas, zetas):
     return found
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), range(4)))
+@pytest.mark.parametrize("seed", sampled(range(12), range(2), kept=4))
 @pytest.mark.parametrize("lightest", [1e-6, 1e-2])
 def test_every_peak_of_many_modes(seed, lightest):
     rng = np.random.default_rng(seed)
@@ -141,7 +141,7 @@ def brute_force(system):
     return float(values.max())
 
 
-@pytest.mark.parametrize("order", [1, 2, 3, 5, 9, 14, 21, 30, 40])
+@pytest.mark.parametrize("order", sampled([1, 2, 3, 5, 9, 14, 21, 30, 40], [1, 2, 5, 14, 21]))
 def test_random_systems_with_several_inputs_and_outputs(order):
     rng = np.random.default_rng(order)
     m, p = int(rng.integers(1, 4)), int(rng.integers(1, 4))

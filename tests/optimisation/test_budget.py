@@ -334,7 +334,7 @@ def test_a_budget_over_conditions_of_a_seat_is_that_of_the_laden_vehicles():
     assert over.value == pytest.approx(alone.value, rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", sampled(range(6), [0, 1]))
+@pytest.mark.parametrize("seed", sampled(range(6), [0, 1], kept=2))
 def test_a_budget_is_no_better_than_what_it_rests_on(seed):
     """Random cars by a method that is inaccurate where friction sticks, looked at between the points of its grid."""
     rng = np.random.default_rng([seed, 31])

@@ -73,7 +73,7 @@ def by_evolution(car, index, limits, seed=0):
     return float(found.fun)
 
 
-@pytest.mark.parametrize("number", sampled(range(50), [7], kept=2))
+@pytest.mark.parametrize("number", sampled(range(50), [7], kept=1))
 def test_a_second_solver_finds_the_same_optimum(number):
     car, index, limits, _ = problem(number)
     best = it.optimise(car, index, NORM, subject_to=limits)
@@ -85,7 +85,7 @@ def test_a_second_solver_finds_the_same_optimum(number):
     assert other <= best.value * (1.0 + 2e-3)  # evolution creeps along what is limited
 
 
-@pytest.mark.parametrize("number", sampled(range(50), kept=2))
+@pytest.mark.parametrize("number", sampled(range(50), kept=1))
 def test_what_a_limit_costs_is_what_moving_it_costs(number):
     car, index, limits, step = problem(number)
     best = it.optimise(car, index, NORM, subject_to=limits)
@@ -237,7 +237,7 @@ def test_weighted_comfort_with_a_limit_on_travel():
     assert best.sensitivities == {"r.m.s. suspension travel at most 3 mm": best.limits[0].sensitivity}
 
 
-@pytest.mark.parametrize("seed", sampled(range(4), [0]))
+@pytest.mark.parametrize("seed", sampled(range(4), [0], kept=1))
 def test_a_peak_gain_that_some_design_has_can_be_asked_for(seed):
     """Its highest peak is the one that has to be there, whichever of two unequal ones that is."""
     rng = np.random.default_rng([seed, 77])

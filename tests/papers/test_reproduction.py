@@ -58,7 +58,9 @@ EXPECTED = [(1, "J1 1"), (1, "J1 4"), (1, "J3 9"), (1, "J3 10"), (1, "J5 6"), (1
 EXPECTED += [(3, "J1 9"), (3, "J3 7"), (3, "J5 3")]
 
 
-@pytest.mark.parametrize(("table", "name"), sampled(EXPECTED, [(1, "J1 4"), (1, "J3 9"), (1, "J5 10"), (3, "J1 9")]))
+@pytest.mark.parametrize(
+    ("table", "name"), sampled(EXPECTED, [(1, "J1 4"), (1, "J3 9"), (1, "J5 10"), (3, "J1 9")], kept=3)
+)
 def test_rows_of_the_expected_value(table: int, name: str) -> None:
     """Within what four runs, the printed digits and the conventions explain, from the printed designs alone."""
     row = computed_row(table, name)
@@ -72,7 +74,7 @@ def test_rows_of_the_expected_value(table: int, name: str) -> None:
         )
 
 
-@pytest.mark.parametrize("case", [4, 6, 9, 10])
+@pytest.mark.parametrize("case", sampled([4, 6, 9, 10], [4, 9]))
 def test_the_column_of_j5_is_what_the_public_method_says_under_either_conventions(case: int) -> None:
     """No printed number has a say in it; where the printed one follows another peak, the verdict tells."""
     row = computed_row(1, f"J5 {case}")
@@ -84,6 +86,7 @@ def test_the_column_of_j5_is_what_the_public_method_says_under_either_convention
     assert ("not the highest" in reason(row)) == (case in (6, 10))
 
 
+@pytest.mark.campaign
 def test_a_row_of_the_approximated_linear_model() -> None:
     row = computed_row(2, "J3 9")
     assert abs(row.difference) < 15e-3
@@ -110,6 +113,7 @@ def test_how_far_method_1_is_from_the_printed_table() -> None:
     assert "5 and 11 % higher than printed for S2 (10 and 20 N), and 5 and 13 % lower for S3" in text
 
 
+@pytest.mark.campaign
 def test_errors_that_do_not_scatter_count_in_rows_and_curves() -> None:
     """What a window twice as wide changes is no sampling, and for J5 more than that."""
     row = next(row for row in simulated_rows(2) if (row.index, row.case) == ("J5", 13))

@@ -88,7 +88,7 @@ def test_an_end_that_leaves_the_other_criterion_open_is_the_best_in_that_too(oth
 @pytest.mark.parametrize(
     ("kind", "pair", "number", "count"),
     sampled(
-        MEMBERS, often=[("S3", 0, 0, 20_000)], seldom=[member for member in MEMBERS if member[-1] > 20_000], kept=2
+        MEMBERS, often=[("S3", 0, 0, 20_000)], seldom=[member for member in MEMBERS if member[-1] > 20_000], kept=1
     ),
 )
 def test_no_random_design_dominates_a_point(kind, pair, number, count):
@@ -112,7 +112,7 @@ def test_no_random_design_dominates_a_point(kind, pair, number, count):
 HARD = [83, 89, 93, 95]  # fronts that had gaps, as 16
 
 
-@pytest.mark.parametrize("number", sampled(range(120), often=[16, *HARD[2:]], kept=1))
+@pytest.mark.parametrize("number", sampled(range(120), often=[16, *HARD[2:]], kept=0))
 def test_fronts_of_a_force_have_no_gaps_that_are_not_told(number):
     """Many designs may have the least force of a damper: the best of them in the other criterion is the end."""
     rng = np.random.default_rng([number, 818])
@@ -230,6 +230,7 @@ def test_criteria_that_do_not_contradict_each_other():
     assert front.values[0, 0] == pytest.approx(it.optimise(car, J1, NORM).value, rel=1e-6)
 
 
+@pytest.mark.campaign
 def test_a_front_that_no_design_reaches():
     front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J5], NORM, subject_to=[it.at_most(J3, 100.0)])
     assert front.values.shape == (0, 2)

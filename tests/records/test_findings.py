@@ -130,6 +130,7 @@ def test_a_delay_against_a_measured_acceleration(late, seed):
     assert abs(delay - late) < 5.0 * error + 1e-5
 
 
+@pytest.mark.campaign
 @settings(max_examples=8)
 @given(st.floats(-3e-3, 3e-3), st.sampled_from([0.0, 200.0, 1000.0]), st.sampled_from([0.0, 10.0]), st.integers(0, 100))
 def test_a_delay_beside_the_phase_of_the_device(late, damping, friction, seed):

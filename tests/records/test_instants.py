@@ -111,7 +111,7 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(
-    ("fault", "seed"), sampled([(f, s) for f in FAULTS for s in range(6)], [(f, 0) for f in FAULTS], kept=12)
+    ("fault", "seed"), sampled([(f, s) for f in FAULTS for s in range(6)], [(f, 0) for f in FAULTS], kept=6)
 )
 def test_a_fault_of_the_recorder_is_found_by_its_kind(fault: str, seed: int) -> None:
     record = FAULTS[fault](seed)

@@ -165,6 +165,7 @@ def figures(tmp_path_factory):
     return folder
 
 
+@pytest.mark.campaign
 def test_the_same_results_give_the_same_page(study, figures, tmp_path):
     first = write_report(designs(), study, figures, tmp_path / "1.html")
     second = write_report(designs(), study, figures, tmp_path / "2.html")

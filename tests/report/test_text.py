@@ -55,6 +55,7 @@ def test_a_sweep_by_its_best_and_its_worst():
     assert "  S2      +7.0 % at 300 kN/m  -2.0 % at 100 kN/m" in terminal_text(results).split("\n")
 
 
+@pytest.mark.campaign
 @settings(max_examples=10, phases=[Phase.explicit, Phase.generate])
 @given(st.lists(NAMES, min_size=2, max_size=6, unique=True), ANY_VALUE, st.booleans(), st.integers(1, 4))
 def test_tables_by_method_fit_a_terminal(names, value, swept, count):
@@ -187,6 +188,7 @@ def test_the_best_layout_has_the_least_finite_value():
     assert best_layouts(with_value(results, math.nan, layout="S3", index="J1"), "J1")[0] == "S2"
 
 
+@pytest.mark.campaign
 @settings(max_examples=20)
 @given(st.permutations([2, 3, 3, 9]), st.floats(-1e-15, 1e-15), st.sampled_from([1e-9, 8.333e-6, 1e5]))
 def test_of_equally_good_layouts_the_simplest_is_named_and_the_others_are_told(counts, rounding, value):

@@ -111,6 +111,6 @@ def test_a_general_solver_finds_the_same() -> None:
     assert sum(compared(seed) for seed in range(4)) > 10
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(20), kept=1))
 def test_a_general_solver_finds_the_same_in_a_hundred_cars(chunk: int) -> None:
     assert sum(compared(seed) for seed in range(100 * chunk, 100 * chunk + 5)) > 5

@@ -75,7 +75,7 @@ def random_car(seed: int):
     return car, [*roads, *forces], delays, half
 
 
-@pytest.mark.parametrize("seed", sampled(range(8), range(0, 8, 2)))
+@pytest.mark.parametrize("seed", sampled(range(8), [0, 4], kept=3))
 def test_whole_steps_are_single_steps(seed):
     car, signals, delays, half = random_car(seed)
     outputs = COMFORT + LOADS[half]

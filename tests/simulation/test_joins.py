@@ -95,12 +95,12 @@ def assert_close(judge: Callable[[int], float | None], seeds: Iterable[int], lea
     assert len(known) >= least
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), often=[0], kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(4), often=[0], kept=1))
 def test_two_parts_are_the_whole(chunk: int) -> None:
     assert_close(joined, range(5000 + 100 * chunk, 5000 + 100 * chunk + 10), 6)
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(20), kept=1))
 def test_two_parts_are_the_whole_in_many_members(chunk: int) -> None:
     assert_close(joined, range(1000 * chunk, 1000 * chunk + 11), 1)
 

@@ -151,6 +151,7 @@ def test_rest_is_unstrained_over_a_road_that_is_not_level():
     np.testing.assert_allclose(run["pitch_displacement"], 0.03 / 2.04, rtol=1e-9)
 
 
+@pytest.mark.campaign
 def test_mean_squares_of_a_batch_are_those_of_single_runs():
     cars = [quarter_car(f, gap) for f, gap in ((0.0, None), (50.0, None), (20.0, 1e-4))]
     noise = it.held_noise(seed=4, power=1e-8, duration=1.0)

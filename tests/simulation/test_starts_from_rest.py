@@ -96,7 +96,7 @@ def off(seed: int) -> float:
     return float(np.max(np.abs(found - other)) / np.max(np.abs(other)))
 
 
-@pytest.mark.parametrize("chunk", sampled(range(200), [0], often=[1, 2, 3, 4], kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(200), [0], often=[1, 2, 3, 4], kept=0))
 def test_every_member_starts_and_both_integrators_agree(chunk: int) -> None:
     """Ten members a chunk, 2000 in all; time stepping is of first order where contacts are met."""
     found = np.array([off(seed) for seed in range(10 * chunk, 10 * (chunk + 1))])

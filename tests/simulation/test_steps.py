@@ -111,12 +111,12 @@ def family(seeds: range | list[int], steps: tuple[float, ...], needed: int) -> d
     return found
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), [0]))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0], kept=1))
 def test_the_step_decides_nothing(chunk: int) -> None:
     family(range(1000 * chunk, 1000 * chunk + 20), (5e-4, 2e-4, 5e-5, 1.25e-5), 6)
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(20), kept=1))
 def test_the_step_decides_nothing_in_many_members(chunk: int) -> None:
     assert sum(family(range(1000 * chunk, 1000 * chunk + 40), STEPS, 10).values()) >= 10
 
@@ -135,13 +135,13 @@ def survives(seed: int, steps: tuple[float, ...]) -> str:
     return "simulated"
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), [0]))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0], kept=1))
 def test_extremes_are_simulated_or_refused(chunk: int) -> None:
     found = [survives(seed, (5e-4, 1e-4)) for seed in range(1000 * chunk, 1000 * chunk + 10)]
     assert found.count("simulated") >= 5
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(20), kept=1))
 def test_many_extremes_are_simulated_or_refused(chunk: int) -> None:
     found = [survives(seed, (5e-4, 2e-4, 5e-5)) for seed in range(1000 * chunk, 1000 * chunk + 10)]
     print(*found)
@@ -191,7 +191,7 @@ def test_what_slips_until_all_lies_still_sticks_then(step: float) -> None:
             assert run.events[-1].time < 0.51
 
 
-@pytest.mark.parametrize("step", [5e-4, 1e-4, 2e-5])
+@pytest.mark.parametrize("step", sampled([5e-4, 1e-4, 2e-5], [1e-4]))
 def test_after_a_long_stick_the_slip_begins_where_it_must(step: float) -> None:
     """Ten seconds of sticking while the car swings on its tyre; then a slow push breaks the friction loose, once."""
     time = np.array([0.0, 10.0, 11.0])

@@ -160,7 +160,7 @@ def uneven_case(seed: int):
     return paper_quarter_car(base | part), {"road": road(rng)}
 
 
-@pytest.mark.parametrize("chunk", sampled(range(40), [0, 1], often=[2, 3, 4], kept=2))
+@pytest.mark.parametrize("chunk", sampled(range(40), [0], often=[1, 2, 3, 4], kept=0))
 def test_two_integrators_agree_on_random_networks_of_uneven_laws(chunk):
     done = 0
     for seed in count(1000 * chunk):

@@ -145,7 +145,7 @@ filter = {{ numerator = {passed[0]}, denominator = {passed[1]} }}"""
     return index, size * value
 
 
-@pytest.mark.parametrize("seed", sampled(range(60), [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(60), [0], kept=1))
 def test_a_random_response_in_a_file_is_a_quadrature_along_the_frequencies(seed: int, load: Load) -> None:
     rng, checked = np.random.default_rng([seed, 77]), 0
     for family in FAMILIES:
@@ -159,7 +159,7 @@ def test_a_random_response_in_a_file_is_a_quadrature_along_the_frequencies(seed:
     assert checked >= 1
 
 
-@pytest.mark.parametrize("seed", sampled(range(20), [0], kept=3))
+@pytest.mark.parametrize("seed", sampled(range(20), [0], kept=2))
 def test_a_peak_response_in_a_file_is_the_largest_gain(seed: int, load: Load) -> None:
     rng, checked = np.random.default_rng([seed, 78]), 0
     for family in FAMILIES:

@@ -184,7 +184,7 @@ def check_tolerance(tables: Tables, plain: Plain, folder: Path, found: Outcome, 
     assert told.numbers["worst"] >= drawn.max() - 2.0 * error
 
 
-@pytest.mark.parametrize("seed", sampled([1, 3, 9, 19, 21], often=[3], kept=1))
+@pytest.mark.parametrize("seed", sampled([1, 3, 9, 19, 21], often=[3], kept=0))
 def test_what_is_combined_is_what_single_designs_say(seed: int, tmp_path: Path) -> None:
     tables, plain = limited(seed, tmp_path)
     found = check_optimum(tables, plain, tmp_path, seed)

@@ -38,6 +38,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
     return run_study(study_of(folder, ASK), folder / "out")
 
 
+@pytest.mark.campaign
 def test_a_front_is_that_of_python(found: StudyResult) -> None:
     study = found.study
     assert study.indices == ("J1", "tyre-load")
@@ -99,7 +100,7 @@ def test_an_interrupted_front_goes_on_to_the_same_bytes(found: StudyResult, tmp_
         np.testing.assert_array_equal(stored["front_value"], found.data["front_value"])
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> None:
     study = study_of(tmp_path, ASK + 'subject_to = { J3 = { at_most = "1 N" } }')
     result = run_study(study, tmp_path / "out")

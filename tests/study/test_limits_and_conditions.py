@@ -109,7 +109,7 @@ def test_a_limit_on_a_ratio_is_a_number(load: Callable[..., Study], of: str, sen
     assert alone[0].value == 0.3
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., Study], tmp_path: Path) -> None:
     study = load('indices = ["J1"]\noptimise = "norm"\nsubject_to = { J3 = { at_most = "10 N" } }')
     result = run_study(study, tmp_path / "out")
@@ -436,6 +436,7 @@ def test_limits_need_a_search(load: Callable[..., Study]) -> None:
         load('indices = ["J1"]\nsubject_to = { J3 = { at_most = "1 N" } }', elements=fixed)
 
 
+@pytest.mark.campaign
 def test_a_budget_holds_over_conditions_of_the_vehicle(load: Callable[..., Study], tmp_path: Path) -> None:
     """One condition of all the time is the study of the numbers in it."""
     elements = 'k = "60 kN/m"\nc = "3 kN s/m"\nc2 = "6 kN s/m"\nb = "300 kg"\nf = "5 N"'

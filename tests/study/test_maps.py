@@ -113,6 +113,7 @@ def test_a_map_is_told_in_words_that_fit(data: xr.Dataset) -> None:
     assert f"S2 is better than S1 at {count}" in text
 
 
+@pytest.mark.campaign
 def test_the_figures_of_a_map_are_drawn_and_captioned(study: Study, data: xr.Dataset, tmp_path: Path) -> None:
     names = [figure.name for figure in study_figures(data)]
     assert names == ["map-J1", "map-c-J1", "map-b-J1", "map-J3", "map-c-J3", "map-b-J3"]

@@ -48,7 +48,7 @@ def _names(tables: Any) -> set[str]:
     return set(re.findall(r"[A-Za-z_][A-Za-z0-9_]*", json.dumps(tables)))
 
 
-@pytest.mark.parametrize(("name", "element"), sampled(MEMBERS, [OFTEN, ("limits", "b"), ("tolerances", "c")], kept=16))
+@pytest.mark.parametrize(("name", "element"), sampled(MEMBERS, [OFTEN, ("limits", "b"), ("tolerances", "c")], kept=8))
 def test_a_study_has_the_same_numbers_after_a_renaming(name: str, element: str) -> None:
     tables = DOCUMENTS[name]
     renamed = rename_elements(tables, {element: NEW})
@@ -128,9 +128,7 @@ NAMES = [NEW, "share", "road", "study", "constructor", "toString", "name"]
 RENAMED = [(element, new) for element in EVERYWHERE["elements"] for new in NAMES]
 
 
-@pytest.mark.parametrize(
-    ("element", "new"), sampled(RENAMED, [each for each in RENAMED if each[0] == "c" or each[1] == NEW], kept=9)
-)
+@pytest.mark.parametrize(("element", "new"), sampled(RENAMED, [each for each in RENAMED if each[0] == "c"], kept=8))
 def test_every_name_gives_the_same_numbers(element: str, new: str) -> None:
     """Also names that are keys of a condition, sections of a file, or attributes of objects in other languages."""
     before, after = _study(_valid()), _study(rename_elements(_valid(), {element: new}))

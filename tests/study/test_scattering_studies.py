@@ -103,6 +103,7 @@ k2 = { tied = "1 / (1 / k - 1 / k1)" }"""
 )
 
 
+@pytest.mark.campaign
 def test_a_tied_value_scatters_by_its_own_name(tmp_path: Path) -> None:
     """The best design and the one that is best at a quantile, each with what Python says of it."""
     path = tmp_path / "study.toml"

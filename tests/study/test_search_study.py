@@ -237,6 +237,7 @@ def real(tmp_path_factory: pytest.TempPathFactory) -> StudySearch:
     return search_study(load_text(folder, text(settings, elements)), folder / "out")
 
 
+@pytest.mark.campaign
 def test_real_inerters_in_the_best_networks(real: StudySearch) -> None:
     """The values are at least as good as those of the ideal network in the real one, and those of the design."""
     rows = csv_of(real.folder / "search_real_inerters.csv")

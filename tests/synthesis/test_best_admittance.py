@@ -129,6 +129,7 @@ def test_no_layout_of_a_degree_rides_better_than_the_best_admittance():
         assert best[degree - 1] <= optimise(car(layout), ROAD, Norm(), seed=0).value * (1.0 + 1e-8)
 
 
+@pytest.mark.campaign
 def test_the_same_seed_gives_the_same_admittance():
     index = distance_to(Spring(5e3) - (Damper(800.0) | Inerter(30.0)))
     one, other = (best_admittance(index, 2, damping=1e3, omega=10.0, starts=4, seed=3) for _ in range(2))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from fractions import Fraction
 from functools import reduce
+from itertools import product
 from operator import or_, sub
 
 import numpy as np
@@ -118,8 +119,7 @@ def test_positive_real_functions_are_realised(family):
     assert max(degrees) == 6
 
 
-@pytest.mark.parametrize("seed", sampled(range(40), kept=1))
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize(("family", "seed"), sampled(product(FAMILIES, range(40)), kept=2))
 def test_many_positive_real_functions_are_realised(family, seed):
     rng = np.random.default_rng(100 + seed)
     for _ in range(125):
@@ -221,7 +221,7 @@ def of_a_bridge(bridge: Bridge) -> tuple[Polynomial, Polynomial]:
     return n[first : last + 1], d[first : last + 1]
 
 
-@pytest.mark.parametrize("kinds", [(Inerter, Spring), (Spring, Inerter)])
+@pytest.mark.parametrize("kinds", sampled([((Inerter, Spring),), ((Spring, Inerter),)], [((Inerter, Spring),)]))
 def test_bridges_of_two_reactive_elements_are_found_again(kinds):
     """Ladenheim (1948): of biquadratics that are not regular, only these have two reactive elements."""
     rng, regular = np.random.default_rng(2), Counter()

@@ -86,7 +86,7 @@ def test_five_hundred_random_networks_in_both_cars(chunk):
             assert mismatch(car, outputs, random_frequencies(rng), solved) < 1e-9, seed
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), [0, 1]))
+@pytest.mark.parametrize("chunk", sampled(range(4), [0], often=[1], kept=0))
 def test_random_networks_in_random_cars_by_the_public_frequency_response(chunk):
     for seed in range(1000 + 25 * chunk, 1000 + 25 * chunk + 25):
         rng = np.random.default_rng(seed)
@@ -225,7 +225,7 @@ def test_any_mechanism_agrees_with_the_nodal_solve(seed):
     assert difference(frequency_response(system, omega), mechanism, system.inputs, OUTPUTS, omega) < 1e-8
 
 
-@pytest.mark.parametrize("seed", sampled(range(30), range(10)))
+@pytest.mark.parametrize("seed", sampled(range(30), range(10), kept=10))
 def test_no_passive_mechanism_is_unstable(seed):
     rng = np.random.default_rng(seed)
     for car in (random_quarter_car(rng, random_network(rng)), three_axles(*(random_network(rng) for _ in range(3)))):

@@ -72,7 +72,7 @@ def full_car(rng, one_road=False):
     )
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), [0], kept=8))
+@pytest.mark.parametrize("chunk", sampled(range(20), [0], kept=4))
 def test_dependent_struts_agree_with_the_nodal_solve_however_their_levers_are_rounded(chunk):
     for seed in range(5 * chunk, 5 * chunk + 5):
         rng = np.random.default_rng([41, seed])
@@ -87,7 +87,7 @@ def test_dependent_struts_agree_with_the_nodal_solve_however_their_levers_are_ro
                 assert error.max() < 1e-9, (seed, output)
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), often=[0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(12), often=[0], kept=1))
 def test_norms_of_dependent_struts_are_those_of_quadrature(seed):
     mechanism = full_car(np.random.default_rng([42, seed]), one_road=True)
     for output in ("body_acceleration", "roll_acceleration", "diagonal_travel"):
@@ -125,7 +125,7 @@ def beam(rng, first, second):
     )
 
 
-@pytest.mark.parametrize("seed", sampled(range(40), [0, 1, 2, 3], kept=10))
+@pytest.mark.parametrize("seed", sampled(range(40), [0, 1, 2, 3], kept=5))
 def test_infinite_is_infinite_however_levers_are_rounded(seed):
     rng = np.random.default_rng([44, seed])
     lever = float(rng.uniform(0.2, 1.5))

@@ -22,7 +22,7 @@ def pair(seed: int) -> tuple[it.FullCar, it.Mechanism]:
     return full, replace(full.mechanism(), mirror=())
 
 
-@pytest.mark.parametrize("seed", sampled(range(40), range(4), kept=9))
+@pytest.mark.parametrize("seed", sampled(range(40), range(4), kept=4))
 def test_norms_are_those_of_both_halves(seed: int) -> None:
     full, whole = pair(seed)
     names = ["unsprung_front_right_acceleration", "rear_right_travel", "tyre_front_right_load", "pitch_velocity"]

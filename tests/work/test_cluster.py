@@ -232,7 +232,7 @@ def test_values_an_identification_and_a_table_are_the_same(tmp_path: Path, there
         assert (tmp_path / "own" / name).read_bytes() == (tmp_path / "there" / name).read_bytes()
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 @pytest.mark.timeout(900)
 def test_what_kills_every_worker_is_named_and_the_rest_complete(tmp_path: Path, there: Cluster) -> None:
     for process in there.processes[1:]:

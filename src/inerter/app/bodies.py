@@ -33,7 +33,7 @@ class DesignRequest(Body):
 class ComparedDesign(DesignRequest):
     """A design that is compared: one of the study of the request, or of another one."""
 
-    study: Annotated[Document | None, Field(description="That it is of, if it is another one.")] = None
+    study: Annotated[Document | None, Field(description="Study of the design, if it is another one.")] = None
 
 
 class ReadStudy(Body):
@@ -107,8 +107,8 @@ class OfDesigns(Body):
 class PanelRequest(OfDesigns):
     """A request to a panel."""
 
-    client: Annotated[str, Field(max_length=100, description="One for each page that is open.")] = ""
-    sequence: Annotated[Number, Field(description="Rises with each request of the page to the panel.")] = 0
+    client: Annotated[str, Field(max_length=100, description="Unique text of each open page.")] = ""
+    sequence: Annotated[Number, Field(description="Increases with each request of the page to the panel.")] = 0
     design: DesignRequest | None = None
     layout: Name | None = None
     index: Name | None = None
@@ -120,7 +120,7 @@ class PanelRequest(OfDesigns):
     spread: Annotated[dict[Name, Number], Field(description="Relative tolerances of the values.")] = {}
     samples: Annotated[int, Field(ge=2, le=65536)] | None = None
     outputs: list[Name] = []
-    output: Annotated[Name, Field(description="The only one that is wanted; else the first.")] = ""
+    output: Annotated[Name, Field(description="The only output in the answer; default: the first.")] = ""
 
 
 class WorkRequest(OfDesigns):
@@ -155,11 +155,11 @@ class DesignExport(Body):
     """A design that is wanted in the format of another program."""
 
     kind: Name
-    suffix: Annotated[Name, Field(description="Of the file, where the kind has several.")] = ""
+    suffix: Annotated[Name, Field(description="Suffix of the file, if the kind has several.")] = ""
     study: Document
     design: DesignRequest
-    index: Annotated[Name | None, Field(description="Whose curves are in tables, by default the first.")] = None
-    linear: Annotated[bool, Field(description="Leave out friction and gaps on purpose.")] = False
+    index: Annotated[Name | None, Field(description="Index whose curves are in tables; default: the first.")] = None
+    linear: Annotated[bool, Field(description="Export the linear model: neglect friction and close gaps.")] = False
 
 
 class ExportRequest(Body):

@@ -76,7 +76,7 @@ KINDS = {
         WorkKind("compare", "Two to four designs side by side", ("designs", *_DESIGNS), f"{_STUDIED}:compare"),
         WorkKind(
             "identify",
-            "What a measured device is made of",
+            "Parameters of a measured device",
             ("records", "model", "config"),
             "inerter.app.identification_jobs:identify",
         ),

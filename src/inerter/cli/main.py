@@ -459,7 +459,7 @@ def serve(
 ) -> None:
     """Open the interactive workbench in the browser.
 
-    It listens on this machine alone, and prints its link. Ctrl-C ends it.
+    The server listens on this machine only, and prints its link. Ctrl-C stops it.
 
     Parameters
     ----------

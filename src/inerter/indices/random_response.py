@@ -41,7 +41,7 @@ class RandomResponse:
     excitation: Road | Excitation = field(
         metadata=typed_field(
             "excitation",
-            "What excites the vehicle; the road of the study if left out.",
+            "Excitation of the vehicle; the road of the study if left out.",
             '{ ground_acceleration = "0.01 (m/s^2)^2/Hz" }',
         )
     )

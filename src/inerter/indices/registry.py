@@ -45,7 +45,7 @@ _ROAD, _EXCITATION = "road", "excitation"
 _EXCITED = TypedField(
     _ROAD,
     _EXCITATION,
-    "What excites the vehicle; the road of the study if left out.",
+    "Excitation of the vehicle; the road of the study if left out.",
     '{ force = "sprung_force", intensity = "1 N^2/Hz" }',
     _EXCITATION,
 )

@@ -56,7 +56,7 @@ def _warning_lines(found: IdentificationResult) -> Iterator[str]:
             initial_indent=f"  {number}. ",
             subsequent_indent="     ",
         )
-        for line in (f"With it {values}." if values else "", f"What to do: {remedy}." if remedy else ""):
+        for line in (f"With it {values}." if values else "", f"Remedy: {remedy}." if remedy else ""):
             yield from wrap(line, WIDTH, initial_indent="     ", subsequent_indent="       ", break_on_hyphens=False)
 
 

@@ -93,7 +93,9 @@ FREE_NETWORK = TableCodec(
             whole(1, _MOST), "Least number of elements.", "at_least = 2", 1, name="at_least", attribute="min_elements"
         ),
         *_kind_keys(),
-        section("bridges", YES_OR_NO, "Whether bridges of five arms are networks too.", "bridges = true", False),
+        section(
+            "bridges", YES_OR_NO, "Whether networks with bridges of five arms are included.", "bridges = true", False
+        ),
     ),
     _free_network,
     attributes,

@@ -15,22 +15,22 @@ from inerter.vehicle.rig import Rig
 class RigSettings:
     """Duration of the measurement, and the sensors; omitted values are those of `VirtualRig`."""
 
-    layout: str | None = key(TEXT, "The device that is measured, where there are several.", default=None)
-    duration: float = key(positive("s"), "How long is measured.", 'duration = "5 s"')
-    start: float = key(not_negative("s"), "How long the rig runs before.", default=0.0)
-    seed: int = key(whole(0, 2**63 - 1), "Of the noise.", default=0)
-    sampling: float | None = key(positive("Hz"), "Samples per time.", default=None)
-    table_bandwidth: float | None = key(positive("Hz"), "Of the table.", default=None)
-    encoder_resolution: float | None = key(not_negative("m"), "A step of the encoder.", default=None)
-    encoder_noise: float | None = key(not_negative("m"), "Of the encoder, r.m.s.", default=None)
-    force_range: float | None = key(positive("N"), "The largest force of the load cell.", default=None)
-    force_resolution: float | None = key(not_negative("N"), "A step of the load cell.", default=None)
+    layout: str | None = key(TEXT, "Layout of the measured device; optional if there is only one.", default=None)
+    duration: float = key(positive("s"), "Duration of the record.", 'duration = "5 s"')
+    start: float = key(not_negative("s"), "Duration of the motion before the record.", default=0.0)
+    seed: int = key(whole(0, 2**63 - 1), "Seed of the sensor noise.", default=0)
+    sampling: float | None = key(positive("Hz"), "Sampling rate.", default=None)
+    table_bandwidth: float | None = key(positive("Hz"), "Bandwidth of the table.", default=None)
+    encoder_resolution: float | None = key(not_negative("m"), "Resolution of the encoder.", default=None)
+    encoder_noise: float | None = key(not_negative("m"), "Noise of the encoder, r.m.s.", default=None)
+    force_range: float | None = key(positive("N"), "Measuring range of the load cell.", default=None)
+    force_resolution: float | None = key(not_negative("N"), "Resolution of the load cell.", default=None)
     force_noise: float | None = key(not_negative("N"), "Noise of the load cell, r.m.s.", default=None)
     force_bandwidth: float | None = key(positive("Hz"), "Bandwidth of the load cell.", default=None)
-    force_offset: float | None = key(any_quantity("N"), "Bandwidth of the load cell.", default=None)
-    force_gain: float | None = key(POSITIVE, "Of the load cell: what it shows over what there is.", default=None)
-    force_delay: float | None = key(not_negative("s"), "Of the load cell behind the encoder.", default=None)
-    reversed: bool = key(YES_OR_NO, "Whether the load cell has the other sign.", default=False)
+    force_offset: float | None = key(any_quantity("N"), "Offset of the load cell.", default=None)
+    force_gain: float | None = key(POSITIVE, "Gain of the load cell: reading over true force.", default=None)
+    force_delay: float | None = key(not_negative("s"), "Delay of the load cell relative to the encoder.", default=None)
+    reversed: bool = key(YES_OR_NO, "Whether the load cell is positive in compression.", default=False)
 
 
 @cache_until_registration

@@ -23,24 +23,25 @@ INITIAL = ("rest", "preload", "periodic")
 class SimulationSettings:
     """Settings of the integration, and of the samples that are kept."""
 
-    layout: str | None = key(
-        TEXT, "The layout that is simulated, where there are several.", 'layout = "S1"', default=None
-    )
+    layout: str | None = key(TEXT, "Layout to simulate; optional if there is only one.", 'layout = "S1"', default=None)
     duration: float | None = key(
-        positive("s"), "From the first to the last sample; a period if left out.", 'duration = "10 s"', default=None
+        positive("s"),
+        "Duration of the run; one period of a periodic steady state if left out.",
+        'duration = "10 s"',
+        default=None,
     )
-    step: float = key(positive("s"), "From sample to sample.", 'step = "0.2 ms"', default=2e-4)
+    step: float = key(
+        positive("s"), "Interval between samples, and longest step of the integrator.", 'step = "0.2 ms"', default=2e-4
+    )
     integrator: str = key(
         word("an integrator", INTEGRATORS),
-        "How the motion is computed.",
+        "Integrator.",
         'integrator = "time-stepping"',
         default="event-driven",
     )
-    initial: str = key(
-        word("an initial state", INITIAL), "The state to begin with.", 'initial = "preload"', default="rest"
-    )
-    energy: bool = key(YES_OR_NO, "Whether energies are kept.", "energy = true", default=False)
-    every: int = key(whole(1, 10**9), "How many steps there are to a sample that is kept.", "every = 10", default=1)
+    initial: str = key(word("an initial state", INITIAL), "Initial state.", 'initial = "preload"', default="rest")
+    energy: bool = key(YES_OR_NO, "Whether the energy balance is computed.", "energy = true", default=False)
+    every: int = key(whole(1, 10**9), "Number of steps per stored sample.", "every = 10", default=1)
 
 
 def _model(value: Any) -> str:

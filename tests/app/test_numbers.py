@@ -482,11 +482,11 @@ def test_a_process_is_asked_first_what_a_page_asks_first(monkeypatch: pytest.Mon
 
     def recorded(key: str, body: Any) -> Any:
         answer = answer_panel(key, body)
-        assert answer["designs" if "designs" in answer else "curves"]
+        assert answer[{"decision": "rows", "response": "curves"}.get(key, "designs")]
         asked.append(key)
         return answer
 
     monkeypatch.setattr(answers, "answer_panel", recorded)
     monkeypatch.setattr(answers, "is_compiled", lambda method: compiled)
     answers.first()
-    assert asked == ["indices", "response", *(["optimise"] if compiled else [])]
+    assert asked == ["decision", "response", *(["optimise"] if compiled else [])]

@@ -24,7 +24,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
-from inerter.networks.elements import Damper, Element, Spring
+from inerter.networks.elements import Damper, Element, Inerter, Spring
 from inerter.networks.elements.algebra import CombinedNetwork, Network
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
@@ -44,15 +44,15 @@ _SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
 def first() -> None:
     """Answer the most frequent requests once, so that their modules are loaded and kernels compiled."""
     model, kind = next(iter(VEHICLES.items()))
-    elements: dict[str, Any] = {element.symbol: element.example for element in (Spring, Damper)}
+    elements: dict[str, Any] = {element.symbol: element.example for element in (Spring, Damper, Inerter)}
     study: dict[str, dict[str, Any]] = {
         "vehicle": {"model": model, **{field.key: field.example for field in fields_of(kind)}},
         "road": {field.key: field.example for field in ROAD_QUANTITIES},
         "elements": elements,
-        "layouts": {"first": f"{Spring.symbol} | {Damper.symbol}"},
+        "layouts": {"first": f"{Spring.symbol} | {Damper.symbol}", "second": " | ".join(elements)},
         "study": {"indices": [next(iter(INDICES))]},
     }
-    for key in ("indices", "response"):
+    for key in ("decision", "response"):
         encode_json(answer_panel(key, {"study": study}))
     search = methods_that(searches)[0]
     if is_compiled(search):  # else it would wait here for the compiler

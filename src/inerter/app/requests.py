@@ -11,12 +11,11 @@ from starlette.responses import FileResponse, Response
 
 from inerter.app import about, bodies, documents, parts, study_parts
 from inerter.app.api_description import Endpoint, openapi
-from inerter.app.calls import call, panel
+from inerter.app.calls import panel
 from inerter.app.designs import designs_of
 from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.jobs import Job, as_event, result_of, with_result
 from inerter.app.kinds import KINDS
-from inerter.app.lanes import Waiting
 from inerter.app.panels import PANELS, at_once
 from inerter.app.responses import as_events, as_json, media_type
 from inerter.app.server import Server
@@ -63,10 +62,7 @@ async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dic
 
 
 async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> Response:
-    settings = body.study.get("study")
-    swept = isinstance(settings, dict) and bool(settings.get("sweep"))  # then layouts are tried at many values
-    lane = server.lanes["slow" if swept else "quick"]
-    return as_json(await lane.answer(Waiting((call, "inerter.app.study_check:check_document", body.study))))
+    return as_json(await server.check(body.study))
 
 
 async def _study_parts(server: Server, request: Request, body: bodies.StudyParts) -> dict[str, Any]:

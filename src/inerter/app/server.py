@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Callable
 from concurrent.futures import Executor
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from inerter.app.lanes import Lane, Newest, Waiting
 from inerter.app.records import Records
 from inerter.app.start import InitialStudy
 from inerter.app.warming import Warming
+from inerter.app.wire import Refusal
 from inerter.work.processes import Processes
 
 _LANES = {  # norms; what simulates; records, figures and tables
@@ -61,8 +62,20 @@ class Server:
                 await asyncio.to_thread(worker.shutdown, wait=False, cancel_futures=True)
 
     async def _get_ready(self) -> None:
-        await asyncio.gather(self.lanes["quick"].begin(), self.warming.run(self.jobs.worker))
+        await asyncio.gather(self._begin_quick(), self.warming.run(self.jobs.worker))
         await self.lanes["slow"].begin()
+
+    async def _begin_quick(self) -> None:
+        await self.lanes["quick"].begin()
+        with suppress(Refusal):  # the structures of its designs are found before a page asks
+            await self.check(self.start.document["study"])
+
+    async def check(self, study: dict[str, Any]) -> bytes:
+        """What is to be known of a study document before any work."""
+        settings = study.get("study")
+        swept = isinstance(settings, dict) and bool(settings.get("sweep"))  # then layouts are tried at many values
+        checking = Waiting((call, "inerter.app.study_check:check_document", study))
+        return await self.lanes["slow" if swept else "quick"].answer(checking)
 
     async def aside(self, home: str, *args: Any) -> bytes:
         """Answer of the function named `home`, computed in the process for occasional requests."""

@@ -36,6 +36,11 @@ SHOWN = """() => {
       ...texts(".verdict:not(.wait) > b"), ...texts(".verdict:not(.wait) .caveat")].filter(each => each),
   };
 }"""
+LOOKS = """() => [...document.querySelectorAll(".vehicle canvas, .answers tbody tr, .answers td")].map(each => {
+  const { x, y, width, height } = each.getBoundingClientRect();
+  const { fontSize, backgroundColor } = getComputedStyle(each);
+  return [x, y, width, height, fontSize, backgroundColor];
+})"""
 FRAMES = "() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))"
 NOTHING = {"numbers": [], "curves": 0, "texts": []}
 
@@ -209,7 +214,7 @@ def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor
     page = visitor.page
     visitor.settled()
     page.wait_for_selector(".answers[data-being=current]")
-    before = page.evaluate(SHOWN)["numbers"]
+    before, looks = page.evaluate(SHOWN)["numbers"], page.evaluate(LOOKS)
     with held(visitor):
         _slide(page, "ks")
         page.wait_for_selector(".answers[data-being=coming]")
@@ -217,6 +222,7 @@ def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor
         page.wait_for_selector(".answers tr.stale")
         faded = page.locator(".answers tr.stale .pick").evaluate_all("all => all.map(each => each.title)")
         assert sorted(faded) == ["S2e", "S3e"]  # which alone have this spring
+        assert page.evaluate(LOOKS) == looks  # pale, and otherwise as before: nothing moves with a step of a slider
         page.fill("#network-text", "")
         page.wait_for_selector(".answers tr.stale", state="detached")
         assert page.evaluate(SHOWN)["numbers"] == []

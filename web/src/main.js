@@ -36,15 +36,15 @@ function enter(text) {
 }
 
 /** The document to begin with: that of the link, that of before a reload, that of the command line.
+ * @param {{study: any, stamp: string}} start
  * @returns {Promise<import("./state/document.js").Document | {study: any} | null>} */
-async function firstDocument() {
+async function firstDocument({ study, stamp }) {
   const linked = address.state === null ? null : await unpacked(address.state);
   if (linked) {
     store.look(linked.view);
     return linked.document;
   }
   unread = address.state !== null;
-  const { study, stamp } = await api.get("start");
   const before = remembered();
   const same = isBegunWith(study);
   watchFile(store, api, before === null || same || address.token ? stamp : null);
@@ -58,14 +58,15 @@ let unread = false; // whether the link holds a state that is none
 
 async function connect() {
   try {
-    const about = await api.get("about");
+    const [about, start] = await Promise.all([api.get("about"), begun ? null : api.get("start")]);
     store.dispatch({ type: "told", about });
-    const fresh = begun ? false : await begin();
+    const fresh = start !== null && (await begin(start));
     if (!about.kernels.ready) await compiled();
-    if (fresh) await beginAtBest(store, api);
-    if (fresh && store.get().history.past.length <= 1) store.dispatch({ type: "began" });
     begun = true;
+    const best = fresh ? beginAtBest(store, api) : null;
     store.dispatch({ type: "connected", connection: "ready" });
+    await best;
+    if (fresh && store.get().history.past.length <= 1) store.dispatch({ type: "began" });
     await findWork(store, api);
   } catch (error) {
     if (isUnauthorised(error)) {
@@ -78,9 +79,10 @@ async function connect() {
   }
 }
 
-/** Brings the first document, where undoing ends; returns whether its free values are still to be chosen. */
-async function begin() {
-  const document = await firstDocument();
+/** Brings the first document, where undoing ends; returns whether its free values are still to be chosen.
+ * @param {{study: any, stamp: string}} start */
+async function begin(start) {
+  const document = await firstDocument(start);
   const known = document !== null && "layout" in document;
   if (document !== null) {
     store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });

@@ -19,7 +19,7 @@ import { WorkPanel } from "./panels/work.js";
 import { Clock, Moving } from "./parts/clock.js";
 import { Field } from "./parts/field.js";
 import { Chip, Select, formHandler } from "./parts/controls.js";
-import { html, useEffect, useState } from "./parts/html.js";
+import { html, useEffect, useMemo, useState } from "./parts/html.js";
 import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
 import { answerOf } from "./questions.js";
 import { open } from "./remembering.js";
@@ -45,21 +45,29 @@ export function Page({ store, api, enter }) {
   useEffect(() => listen(store, api, () => setKeys(true)), [store, api]);
   const state = store.get();
   const blank = Object.keys(state.history.present.study).length === 0;
+  /** @param {any} Panel */
+  const shown = (Panel) => html`<${Panel} store=${store} api=${api} />`;
+  const { decision, check, margins } = state.answers;
+  const unanswered = Object.values({ ...state, answers: null });
+  // what an answer is not about is not drawn anew when it comes
+  const [menu, network] = useMemo(() => [Menu, NetworkPanel].map(shown), unanswered);
+  const [line, ranking, values] = useMemo(() => [DecisionLine, AnswersPanel, ValuesPanel].map(shown),
+    [...unanswered, decision, check, margins]);
   return html`<a class="skip" href="#verdict">To the verdict</a>
     <header>
       <h1><span class="product">inerter</span> <${Title} store=${store} /></h1>
-      <${Menu} store=${store} api=${api} />
+      ${menu}
       <button type="button" onClick=${() => setKeys(true)}>Keys <kbd>?</kbd></button>
       <${Theme} store=${store} />
     </header>
-    <${DecisionLine} store=${store} />
+    ${line}
     <${Bar} store=${store} enter=${enter} />
     ${blank ? state.connection === "connecting" ? html`<main></main>` : html`<${Start} store=${store} api=${api} />`
       : html`<main>
-          <div class="col left"><${AnswersPanel} store=${store} /><${NetworkPanel} store=${store} api=${api} /></div>
+          <div class="col left">${ranking}${network}</div>
           <div class=${`col middle ${state.view.tall ? "tall" : ""}`}>
             <${MotionPanel} store=${store} api=${api} /><${Tabs} store=${store} api=${api} /></div>
-          <div class="col"><${ValuesPanel} store=${store} api=${api} /></div>
+          <div class="col">${values}</div>
         </main>`}
     <footer class="keys"><${KeysOfFocus} /><${Standing} store=${store} api=${api} /></footer>
     <${AllKeys} open=${keys} close=${() => setKeys(false)} />`;
@@ -72,24 +80,31 @@ const ACTS = ["keydown", "click", "change", "submit"];
 const holdsChoice = ({ target }) =>
   target instanceof Element && target.matches("select, input[type=checkbox], input[type=radio]");
 
-/** Draws the page whenever the state is another one, at most once a frame, so that sixty steps of a slider draw what a
- * screen can show. What a key or a button does is about what is drawn: what is due comes before it, however late the
- * frame is, but for a choice that a control already holds; and what it did is drawn after it at once, before anything
- * is typed into what is there no longer.
+/** Draws the page whenever the state is another one, as soon as what happens is over, at most once a frame, so that
+ * sixty steps of a slider draw what a screen can show. What a key or a button does is about what is drawn: what is due
+ * comes before it, however late the frame is, but for a choice that a control already holds; and what it did is drawn
+ * after it at once, before anything is typed into what is there no longer.
  * @param {Store} store @param {() => void} draw */
 export function keepDrawing(store, draw) {
   let due = true;
+  let drawn = false; // since the last frame
   const now = () => {
     if (!due) return;
     due = false;
+    if (!drawn) requestAnimationFrame(next);
+    drawn = true;
     draw();
+  };
+  const next = () => {
+    drawn = false;
+    now();
   };
   for (const act of ACTS) {
     addEventListener(act, (event) => holdsChoice(event) || now(), { capture: true });
     addEventListener(act, (event) => (holdsChoice(event) && act !== "change") || now());
   }
   store.subscribe(() => {
-    if (!due) requestAnimationFrame(now);
+    if (!due && !drawn) setTimeout(now);
     due = true;
   });
   now();

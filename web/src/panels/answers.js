@@ -9,7 +9,7 @@ import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { layoutColour } from "../parts/colours.js";
-import { useShown } from "../parts/shown.js";
+import { useLate, useShown } from "../parts/shown.js";
 import { Sketch, sketchesOf } from "./sketch.js";
 import { problemsOf } from "./values.js";
 
@@ -59,7 +59,7 @@ function Ranking({ store, answer: { is, value, before } }) {
   const written = (unit, of) => unitFor(state.about, rows.map(of), unit);
   const units = goal && { goal: written(goal.unit, (row) => row.value), others: others.map(
     (/** @type {any} */ { unit }, /** @type {number} */ i) => written(unit, (row) => row.others[i].value)) };
-  const isRight = before ? isRightStill(state, "decision") : () => true;
+  const isRight = useLate(before) ? isRightStill(state, "decision") : () => true;
   /** @param {KeyboardEvent} event */
   const turn = (event) => {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -80,7 +80,7 @@ function Ranking({ store, answer: { is, value, before } }) {
         title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
     <tbody>${rows.map((row) => html`<${Row} key=${row.layout} store=${store} row=${row} units=${units}
       sketched=${sketches[row.layout] ?? []}
-      stale=${before && !isRight(row.layout)} compared=${!before || isRight(baseline)}
+      stale=${!isRight(row.layout)} compared=${isRight(baseline)}
       missing=${is === "coming" ? "…" : "–"} />`)}</tbody></table></div>`;
 }
 

@@ -5,6 +5,7 @@ import { Chip, Select, Table, formHandler, textHandler } from "../parts/controls
 import { html, useState } from "../parts/html.js";
 import { Being } from "../parts/clock.js";
 import { Doubts, Unchosen, isOk } from "../parts/doubts.js";
+import { useLate } from "../parts/shown.js";
 import { answerOf, comparable, comparedOf } from "../questions.js";
 import { Measured, membersOf, percent } from "./answers.js";
 
@@ -47,6 +48,7 @@ export function ComparePanel({ store }) {
 /** @param {{state: State, answer: Shown, compared: Choice[]}} props */
 function Comparison({ state, answer, compared }) {
   const { value, sentence } = answer;
+  const late = useLate(answer.before);
   // What is free in a design of another study, the answer alone tells.
   const designs = compared.map(({ kept, design }, i) =>
     (kept ? { ...design, unchosen: value?.designs[i]?.unchosen ?? [] } : design));
@@ -57,7 +59,7 @@ function Comparison({ state, answer, compared }) {
   const columns = value.designs;
   const known = [...new Set(columns.flatMap(({ numbers }) => Object.keys(numbers)))];
   const different = known.filter((name) => columns.some(({ numbers }) => numbers[name] !== columns[0].numbers[name]));
-  return html`${first}<${Table} label="Comparison" class=${`compared ${answer.before ? "stale" : ""}`}
+  return html`${first}<${Table} label="Comparison" class=${`compared ${late ? "stale" : ""}`}
     style=${{ minWidth: `${9 * (columns.length + 1)}rem` }}
     heads=${["", ...columns.map(({ name }) => [name, name])]}>
       <tr><th scope="row">network</th>

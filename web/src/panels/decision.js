@@ -103,7 +103,7 @@ function Verdict({ state, blank }) {
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
     data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>
     <div class="row"><${Stale} layouts=${staleLayouts(state)} />
-      <${Caveats} key=${told} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></div></section>`;
+      <${Caveats} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></div></section>`;
 }
 
 /** That layouts are compared at values optimised for another problem, and the button that optimises all of them.

@@ -5,6 +5,7 @@ import { Doubts, Unchosen } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
 import { Select } from "../parts/controls.js";
 import { html, useMemo } from "../parts/html.js";
+import { useLate } from "../parts/shown.js";
 import { Plot } from "../plot.js";
 import { layoutColours } from "../plots/colours.js";
 import { answerOf, designOf } from "../questions.js";
@@ -46,7 +47,7 @@ export function HistoryPanel({ store }) {
     ${setting("seconds", "for [s]", state.view.seconds, { min: 1, max: 120 })}
     ${setting("seed", "road no.", state.view.seed, { min: 0, max: 1e9 })}
     <${Being} shown=${answer} />`;
-  return html`<div class=${`plot-panel${answer.before ? " stale" : ""}`} aria-busy=${answer.is === "coming"}>
+  return html`<div class=${`plot-panel${useLate(answer.before) ? " stale" : ""}`} aria-busy=${answer.is === "coming"}>
     <${Unchosen} state=${state} designs=${[designOf(document)]} />
     <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
     ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."

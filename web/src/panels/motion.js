@@ -4,6 +4,7 @@ import { isSearched, numbersOf, shownElement } from "../library.js";
 import { layoutColour } from "../parts/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
+import { useLate } from "../parts/shown.js";
 import { answerOf, baselineOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
 import { captions } from "../vehicles/captions.js";
@@ -53,7 +54,7 @@ export function MotionPanel({ store }) {
       <button type="button" aria-pressed=${!playing} onClick=${() => store.look({ playing: !playing })}>
         ${playing ? "Hold" : "Run"} <kbd>space</kbd></button>
     </div>
-    <div class=${`picture ${history.before || isKept ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
+    <div class=${`picture ${useLate(history.before || isKept) ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
       ${shown && html`<${Picture} store=${store} shown=${shown} reduced=${reduced} />`}
     </div>
     ${isSearched(state, state.history.present.layout) && html`<${ToSearch} store=${store} />`}
@@ -252,10 +253,11 @@ function render(canvas, stage) {
   const { shown, made, styles, chosen, state, frames } = stage;
   if (!shown || !made) return;
   stage.due = false;
-  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { alpha: false }));
   const ratio = canvas.width / made.width;
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, made.width, made.height);
+  pen.fillStyle = styles.ground.fill ?? "";
+  pen.fillRect(0, 0, made.width, made.height);
   paint(pen, shapesOf(shown, made, Math.min(clock.get(), endOf(shown)), chosen), styles);
   canvas.dataset.frames = String(frames);
   if (!state?.view.playing || dragging) canvas.setAttribute("aria-valuenow", clock.get().toFixed(3));

@@ -4,7 +4,7 @@ import { Being } from "../parts/clock.js";
 import { Chip, DropDown, Select, useChoice } from "../parts/controls.js";
 import { Unchosen } from "../parts/doubts.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { useShown } from "../parts/shown.js";
+import { useLate, useShown } from "../parts/shown.js";
 import { Plot } from "../plot.js";
 import { layoutColours, numberedColour } from "../plots/colours.js";
 import { answerOf, baselineOf, choicesOf, drawnIndex, ghostPanel, ghostsOf, isRightStill, shownDesigns }
@@ -36,14 +36,16 @@ export function ResponsePanel({ store }) {
   const [label, setLabel] = useChoice(labels.length > 1 ? [...labels, ALL] : labels);
   const [parts, setParts] = useState(PARTS[0]);
   const [at, read] = useState(/** @type {number | null} */ (null));
-  const isRight = shown.before ? isRightStill(state, "response") : () => true;
+  const isRight = useLate(shown.before) ? isRightStill(state, "response") : () => true;
   const stale = [...new Set(found.map(({ layout }) => layout))].filter((layout) => !isRight(layout));
+  const { layout, study: { layouts } } = document;
+  const baseline = baselineOf(document).layout;
   const plots = useMemo(() => {
     const others = ghosts.flatMap(({ value: of, kept }) =>
       (of ? [{ frequency: of.frequency, responses: of.curves, pale: kept }] : []));
     const answers = [{ frequency: value?.frequency ?? [], responses: found, pale: false }, ...others];
     return declared(answers, { index: index ?? "", label: label ?? "", document, stale });
-  }, [value, index, label, document, stale.join(), ...ghosts.map((ghost) => ghost.value)]);
+  }, [value, index, label, layouts, layout, baseline, stale.join(), ...ghosts.map((ghost) => ghost.value)]);
   useShown("response", state);
   const both = parts === "both";
   const current = [shown, ...ghosts].every(({ is }) => is === "current");

@@ -1,5 +1,6 @@
 // What is coming moves, and tells how long it has been coming.
 import { html, useEffect, useState } from "./html.js";
+import { useLate } from "./shown.js";
 
 const OFTEN = 500; // [ms] between two looks at the clock
 const SOON = 1; // [s] from where the time is told
@@ -38,5 +39,8 @@ const BEFORE = "coming; below are the numbers of before";
 
 /** Whether what stands below is the answer to what is asked now.
  * @param {{shown: import("../state/answers.js").Shown}} props */
-export const Being = ({ shown: { is, before } }) => html`<span class="being" data-being=${is}>
-  ${is === "coming" ? html`<${Moving} what=${before ? BEFORE : WORDS.coming} />` : WORDS[is]}</span>`;
+export function Being({ shown: { is, before } }) {
+  const what = useLate(before) ? BEFORE : WORDS.coming;
+  return html`<span class="being" data-being=${is}>
+    ${is === "coming" ? html`<${Moving} what=${what} />` : WORDS[is]}</span>`;
+}

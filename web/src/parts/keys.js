@@ -48,7 +48,7 @@ export function AllKeys({ open, close }) {
   return html`<dialog ref=${dialog} onClose=${close} aria-labelledby="all-keys-title">
     <h2 id="all-keys-title">Keys</h2>
     <p class="quiet">Single letters work where no text is typed.</p>
-    <div class="all-keys">${Object.entries(KEYS).map(([place, rows]) => html`<div key=${place}><h3>${place}</h3>
+    <div class="all-keys">${open && Object.entries(KEYS).map(([place, rows]) => html`<div key=${place}><h3>${place}</h3>
       ${rows.map(([keys, words]) => html`<p key=${words}>
         ${keys.split(" ").map((key) => html`<kbd>${key}</kbd> `)}${words}</p>`)}</div>`)}</div>
     <form method="dialog"><button class="edged">Close</button></form>

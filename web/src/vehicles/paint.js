@@ -6,15 +6,8 @@ import { symbolParts } from "../state/scale.js";
 /** @typedef {{fill?: string, stroke?: string, width?: number, dash?: number[], font?: string, alpha?: number,
  * round?: boolean}} Style */
 
-/** Colours where the page's styles have none of that name: light, dark. @type {{[name: string]: [string, string]}} */
-const COLOURS = {
-  surface: ["#ffffff", "#171e24"], ink: ["#17212b", "#e6ecf1"], ink2: ["#52606d", "#9fadb9"],
-  line: ["#dbe1e6", "#2b353e"], accent: ["#0a5bb5", "#6fb4ff"], soft: ["#e4effa", "#17324d"],
-  stick: ["#c77700", "#f2a93b"], warn: ["#7a4b00", "#ffcf70"], body: ["#dfe7ee", "#2a3742"],
-  glass: ["#f3f7fa", "#1c262e"], tyre: ["#2b343c", "#05080a"], earth: ["#e6e2da", "#211f1b"],
-  road: ["#6f675a", "#a0978a"], s1: ["#5b6873", "#9ba8b4"], s2: ["#a65300", "#f0a35a"], s3: ["#0a5bb5", "#6fb4ff"],
-  s4: ["#6b3fa0", "#c4a1f5"], s5: ["#14703a", "#5bcb8a"], s6: ["#8a6d00", "#e0c35a"],
-};
+const COLOURS = ["surface", "ink", "ink2", "line", "accent", "soft", "stick", "warn", "body", "glass", "tyre", "earth",
+  "road", "s1", "s2", "s3", "s4", "s5", "s6"]; // of the page's styles
 
 const DASH = [4, 3];
 const SERIF = "italic 14px 'STIX Two Math', 'Cambria Math', Georgia, 'DejaVu Serif', serif";
@@ -24,10 +17,9 @@ const PLAIN = "11px Inter, system-ui, 'Segoe UI', Roboto, sans-serif";
  * @returns {{[kind: string]: Style}} */
 export function stylesOf(element, own = "var(--s3)") {
   const found = getComputedStyle(element);
-  const dark = isDark(found.color);
-  const c = Object.fromEntries(Object.entries(COLOURS).map(([name, both]) =>
-    [name, found.getPropertyValue(`--${name}`).trim() || both[dark ? 1 : 0]]));
+  const c = Object.fromEntries(COLOURS.map((name) => [name, found.getPropertyValue(`--${name}`)]));
   return {
+    ground: { fill: c.surface },
     wire: { stroke: c.ink, width: 1.6 }, "wire open": { stroke: c.stick, width: 1.8 },
     hatch: { stroke: c.ink2, width: 1 },
     oil: { fill: c.soft }, box: { fill: c.surface, stroke: c.ink, width: 1.6 },
@@ -60,12 +52,6 @@ export function stylesOf(element, own = "var(--s3)") {
     "other trail": { stroke: c.s1, width: 1.5, dash: DASH }, bar: { stroke: c.ink, width: 1.2 },
     own: { stroke: c[own.replace(/^var\(--|\)$/g, "")] ?? c.s3, width: 2.2 },
   };
-}
-
-/** Whether a page with text of this colour is dark. @param {string} colour */
-function isDark(colour) {
-  const [red, green, blue] = (colour.match(/[\d.]+/g) ?? ["0", "0", "0"]).map(Number);
-  return red + green + blue > 380;
 }
 
 /** @param {string} kind @param {{[kind: string]: Style}} styles @returns {Style} */

@@ -20,7 +20,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
 from inerter.report.page import report
 from inerter.report.text import table_lines
-from inerter.tasks.fronts import Fronts
+from inerter.tasks.fronts import FrontAnswer, Fronts
 
 FREE = """k = "30 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -86,6 +86,32 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     page = report(found.data, found.study, tmp_path, found.answers)
     assert ">Trade-off</h2>" in page
     assert re.search(r'>S2</th>\s*<td class="words">knee</td>', page)
+
+
+@pytest.mark.parametrize(
+    ("settings", "more", "words"),
+    [
+        (
+            'quantile = 0.9\ntolerance = { b = "5 %" }',
+            "",
+            "ride comfort, 90 % quantile and dynamic tyre load, 90 % quantile",
+        ),
+        (
+            'conditions = "worst"',
+            '[[conditions]]\n"road.speed" = "15 m/s"\n[[conditions]]\n"road.speed" = "30 m/s"',
+            "ride comfort, worst over conditions and dynamic tyre load, worst over conditions",
+        ),
+    ],
+)
+def test_a_front_says_of_which_values_it_is(tmp_path: Path, settings: str, more: str, words: str) -> None:
+    """The first layout may have none of the elements with tolerances."""
+    study = study_of(tmp_path, f"{ASK}{settings}\n{more}")
+    assert Fronts().table(TaskResults(study, xr.Dataset(), [])).caption.startswith(f"Trade-off between {words}: ")
+    answer = FrontAnswer(
+        layout="S2", status="ok", values=[[2.0, 500.0]], parameters=[{"c": 7e3}], statuses=["ok"], jumps=[], knee=0
+    )
+    (sentence,) = Fronts().sentences(TaskResults(study, xr.Dataset(), [answer]))
+    assert sentence.startswith(f"Trade-off between {words}, at the knee: S2 ")
 
 
 @pytest.mark.campaign

@@ -123,11 +123,10 @@ class Fronts(Task[FrontAnswer]):
                 designs[row, i] = [design.get(name, np.nan) for name in parameters]
             knees[row, [] if front.knee is None else [front.knee]] = True
             leaps[row, front.jumps] = True
-        indices = {name: study.resolve_index(name, layouts[0]) for name in study.trade_off}
         labelled = data.assign_coords(
-            criterion=list(indices),
-            criterion_title=("criterion", [index.title for index in indices.values()]),
-            criterion_unit=("criterion", [study.unit(name) for name in indices]),
+            criterion=list(study.trade_off),
+            criterion_title=("criterion", [study.objective_title(name) for name in study.trade_off]),
+            criterion_unit=("criterion", [study.unit(name) for name in study.trade_off]),
         )
         attributes = {"long_name": "index at a point of the front", "method_words": _method_words(study)}
         return labelled.assign(
@@ -200,8 +199,8 @@ def _without(layout: str, status: str, message: str) -> FrontAnswer:
 
 def _title(study: Study) -> str:
     """Title of the trade-off: its indices, and the method if the study has several."""
-    by = _method_words(study)
-    return f"Trade-off between {format_list([study.index(name).title for name in study.trade_off])}{by and f', {by}'}"
+    by, titles = _method_words(study), [study.objective_title(name) for name in study.trade_off]
+    return f"Trade-off between {format_list(titles)}{by and f', {by}'}"
 
 
 def _method_words(study: Study) -> str:

@@ -209,15 +209,14 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
 
 def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
-    indices = {name: study.resolve_index(name, next(iter(study.layouts))) for name in study.indices}
     swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
     design = ("layout", "index", *swept)
     sizes = {
         "layout": len(study.layouts),
-        "index": len(indices),
+        "index": len(study.indices),
         **swept,
         "method": len(study.evaluate),
-        "other": len(indices),
+        "other": len(study.indices),
         "parameter": len(parameters),
         "limit": len(study.limits),
         "at_speeds.speed": len(BESIDE),
@@ -232,14 +231,14 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     coords: dict[str, Any] = {
         "layout": list(study.layouts),
         "elements": ("layout", [_count(study, layout) for layout in study.layouts]),
-        "index": list(indices),
+        "index": list(study.indices),
         "method": list(study.evaluate),
         "method_words": ("method", list(method_labels(study).values())),
-        "other": list(indices),
+        "other": list(study.indices),
         "parameter": list(parameters),
         "parameter_unit": ("parameter", list(parameters.values())),
-        "index_unit": ("index", [study.unit(name) for name in indices]),
-        "index_title": ("index", [index.title for index in indices.values()]),
+        "index_unit": ("index", [study.unit(name) for name in study.indices]),
+        "index_title": ("index", [study.objective_title(name) for name in study.indices]),
     }
     if study.limits:
         told = [(one, "(swept)" if is_swept(study, one) else one.value_text) for one in study.limits]

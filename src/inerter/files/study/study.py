@@ -119,6 +119,11 @@ class Study(Settings):
             return index
         return Quantile(index, scatter_of(spread, DISTRIBUTIONS[0]), self.quantile, seed=self.seed)
 
+    def objective_title(self, name: str) -> str:
+        """Title of the index of that name as it is minimised: over the conditions, and at the quantile, if any."""
+        scattering_ones = [layout for layout in self.layouts if self.spread(layout)]
+        return self.resolve_index(name, next(iter(scattering_ones or self.layouts))).title
+
     def spread(self, layout: str) -> dict[str, float]:
         """Relative tolerance of each value of a layout that has one, by name."""
         if not self.tolerance:

@@ -243,7 +243,7 @@ def test_the_page_is_there_while_kernels_are_compiled(
         window = visitors(fresh)
         window.page.goto(fresh.link)
         window.page.wait_for_selector("[data-connection=compiling]")
-        assert "The numerical kernels are compiled" in window.page.inner_text("[data-connection=compiling]")
+        assert "The numerical kernels are being compiled" in window.page.inner_text("[data-connection=compiling]")
         window.page.wait_for_function("() => /\\d of \\d/.test(document.querySelector('[data-connection]').innerText)")
         window.page.fill("#network-text", "k | c | b")
         window.page.wait_for_selector("[data-connection=ready]", state="attached", timeout=240_000)

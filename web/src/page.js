@@ -123,7 +123,7 @@ function Title({ store }) {
 /** @type {{[connection: string]: string}} */
 const SAID = {
   connecting: "Connecting…",
-  compiling: "The numerical kernels are compiled, once for this machine; answers come then.",
+  compiling: "The numerical kernels are being compiled, once for this machine; answers follow.",
   lost: "The server does not answer. Your work is here; the page continues when the server is back.",
   refused: "The server does not know this page. Paste the link that it printed, or its token:",
 };

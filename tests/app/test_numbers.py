@@ -74,7 +74,7 @@ def test_a_run_is_that_of_the_command_line(client: TestClient, ran: Any) -> None
         assert client.get(f"/api/work/{told['id']}/files/{name}").content == (result.folder / name).read_bytes()
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_sweep_is_that_of_the_command_line(client: TestClient, tmp_path: Path) -> None:
     sweep = {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 3}}
     told = ask(client, "work", kind="sweep", study=DOCUMENT, sweep=sweep, indices=["J1"], wait=30)

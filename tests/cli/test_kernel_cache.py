@@ -75,7 +75,7 @@ def mount(path: Path, options: str) -> None:
         pytest.skip("only the administrator can mount a file system")
 
 
-@pytest.mark.parametrize("make", sampled([no_folder, no_right, full, read_only], [no_folder]))
+@pytest.mark.parametrize("make", sampled([no_folder, no_right, full, read_only], [no_folder], kept=1))
 def test_a_cache_that_cannot_be_written_is_told_and_done_without(
     make: Callable[[Path], None], tmp_path: Path, temporary: Path
 ) -> None:

@@ -77,7 +77,7 @@ SAID = {  # the exit code, and what is in the text
 }
 
 
-@pytest.mark.parametrize(("line", "terminal"), sampled(product(SAID, POOR), [("inerter check 'ü.toml'", "C")], kept=1))
+@pytest.mark.parametrize(("line", "terminal"), sampled(product(SAID, POOR), [("inerter check 'ü.toml'", "C")], kept=0))
 def test_a_terminal_that_knows_few_characters(line: str, terminal: str, home: Path) -> None:
     code, out, err = shell(line, home, **POOR[terminal])
     assert code == SAID[line][0]

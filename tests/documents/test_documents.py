@@ -39,7 +39,7 @@ LONG = {
     "tutorial-rig.md",
     "tutorial-network.md",
 }  # pages whose blocks take long
-LONGEST = ["cluster.md", "staged-protocol.md"]  # of these the parts have campaigns of their own
+LONGEST = ["cluster.md", "staged-protocol.md", "tutorial-rig.md"]  # of these the parts have campaigns of their own
 WRITTEN = {"exports.md": "car.mo", "study-file.md": "out/summary.csv", "frequency-response.md": "response.csv"}
 
 

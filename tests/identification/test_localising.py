@@ -181,7 +181,7 @@ def coloured(seed: int) -> Record:
     return read(motion, motion["force"] + 0.6 * noise, seed)
 
 
-@pytest.mark.parametrize("count", sampled([12, 60], [12]))
+@pytest.mark.parametrize("count", sampled([12, 60], [12], [60]))
 def test_chance_is_no_pattern_of_the_motion_or_of_time(count: int) -> None:
     """Dependences and changes are named no more often than their p-value says."""
     by_chance = 0

@@ -165,7 +165,7 @@ def with_a_load(grip):
     return Mechanism((*car.coordinates, Coordinate("load", 20.0)), (*car.struts, load), *parts)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_part_that_friction_alone_holds_moves_as_it_is_held():
     """A strong grip makes a heavier body, whose norm comes out; a weak one none, and then the load drifts."""
     for force, mass, kind, share in ((5e3, 201.75, "ok", 1e-7), (1e-3, 181.75, "inaccurate", 1e-4)):

@@ -80,7 +80,7 @@ def test_a_sample_of_each_family(family, extremes):
 @pytest.mark.timeout(3600)
 @pytest.mark.parametrize(
     ("family", "extremes"),
-    sampled(product(FAMILIES, [1.0, 1e2, 1e4]), seldom=list(product(FAMILIES, [1.0, 1e2])), kept=2),
+    sampled(product(FAMILIES, [1.0, 1e2, 1e4]), seldom=list(product(FAMILIES, [1.0, 1e2])), kept=1),
 )
 def test_many_of_each_family(family, extremes):
     assert_right(tally(family, seed=2, count=40, extremes=extremes))

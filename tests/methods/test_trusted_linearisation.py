@@ -73,7 +73,7 @@ BEHIND_SHAFTS = {
 }
 
 
-@pytest.mark.parametrize("where", sampled(MOSTLY_STUCK, kept=1))
+@pytest.mark.parametrize("where", sampled(MOSTLY_STUCK, kept=0))
 def test_a_sum_over_struts_is_no_surer_than_the_strut_that_sticks(where):
     """What the travel of one strut gains with a softer damper, the other loses: in the sum, but not in its error."""
     roughness, speed, quantities, network = MOSTLY_STUCK[where]

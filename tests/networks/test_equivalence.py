@@ -170,7 +170,7 @@ def check_that_classes_differ(size):
             assert not (fits(one, other) and fits(other, one)), (one, other)
 
 
-@pytest.mark.parametrize("size", sampled([3, 4, 5], [3], seldom=[5]))
+@pytest.mark.parametrize("size", sampled([3, 4, 5], [3], seldom=[4, 5]))
 def test_classes_differ_as_functions(size):
     check_that_classes_differ(size)
 

@@ -83,7 +83,7 @@ def test_friction_budget_by_a_root_and_larger_for_a_worse_baseline():
     assert budgets == sorted(budgets)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_a_friction_budget_of_simulated_values_is_where_the_difference_vanishes():
     method = ExpectedValue(realisations=3, seed=2)
     found = break_even(series(), conventional(), J3, parameter="f", method=method, bounds=(200.0, 2000.0))

@@ -177,7 +177,7 @@ def test_a_profile_that_has_changed_is_another_study(load, tmp_path):
     assert (folder / "summary.csv").read_bytes() == before
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_processes_give_the_same_bytes(load, tmp_path):
     study = load(
         'profile = "road.csv"\ncoherence = { track = "1.5 m" }', vehicle=CAR, settings='indices = ["J1", "J3"]'

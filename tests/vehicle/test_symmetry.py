@@ -47,7 +47,7 @@ def test_a_half_has_less_to_solve_and_as_many_tyres() -> None:
     assert [strut.name for strut in half.still] == ["anti_roll_front", "anti_roll_rear"]
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_simulated_means_are_those_of_both_halves() -> None:
     full, _ = pair(1)
     full = replace(full, rear=full.rear | it.Friction(60.0))

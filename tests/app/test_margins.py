@@ -89,7 +89,7 @@ def test_other_speeds_are_those_of_the_same_designs(told: dict[str, Any]) -> Non
         assert one["improvement_percent"] == pytest.approx(100.0 * (1.0 - own / base), rel=1e-9)
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_tolerances_are_assumed_where_the_study_has_none(client: TestClient, told: dict[str, Any]) -> None:
     scatter = told["scatter"]
     assert scatter["is_assumed"]

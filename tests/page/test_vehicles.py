@@ -26,6 +26,12 @@ _COUNT = """([red, green, blue]) => {
   }
   return found;
 }"""
+_RESIZED = """() => {
+  const canvas = document.querySelector(".vehicle canvas");
+  window.seen = [];
+  const colour = () => [...canvas.getContext("2d").getImageData(5, 5, 1, 1).data];
+  new ResizeObserver(() => window.seen.push(colour())).observe(canvas);
+}"""
 STICK = [0xC7, 0x77, 0x00]  # as the page's colours say
 
 
@@ -60,6 +66,16 @@ def _drag(visitor: Visitor, seconds: float) -> None:
 
 def _hold(visitor: Visitor) -> None:
     visitor.page.get_by_role("button", name="Hold").click()
+
+
+def test_a_picture_of_another_size_is_drawn_before_it_is_seen(visitor: Visitor) -> None:
+    page = visitor.page
+    _moving(visitor)
+    page.evaluate(_RESIZED)
+    page.wait_for_function("() => window.seen.length === 1")
+    page.set_viewport_size({"width": 1320, "height": 800})
+    page.wait_for_function("() => window.seen.length > 1")
+    assert {tuple(colour) for colour in page.evaluate("window.seen")} == {(255, 255, 255, 255)}  # as the surface is
 
 
 def test_the_vehicle_moves_until_it_is_held(visitor: Visitor) -> None:

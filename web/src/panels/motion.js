@@ -208,7 +208,7 @@ function filmOn(canvas, store) {
   };
 }
 
-/** Lays the scene out anew. @param {HTMLCanvasElement} canvas @param {Stage} stage
+/** Lays the scene out anew, and draws it. @param {HTMLCanvasElement} canvas @param {Stage} stage
  * @param {import("../vehicles/layout.js").Range} range */
 function fitTo(canvas, stage, range) {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -219,7 +219,7 @@ function fitTo(canvas, stage, range) {
   canvas.height = Math.round(height * ratio);
   const before = made && made.scene.model === shown.scene.model ? made.times : 0;
   stage.made = layout(shown.scene, { width, height }, range, before);
-  stage.due = true;
+  render(canvas, stage); // at once: what has another size is empty, and the next frame too late
 }
 
 /** Sees what has changed of the page: the selected element, whether it is held, now and then the colours.

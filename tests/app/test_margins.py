@@ -99,9 +99,17 @@ def test_tolerances_are_assumed_where_the_study_has_none(client: TestClient, tol
     there = ask(client, "panel/tolerance", **body, method=scatter["method"], samples=256)
     assert (scatter["worst"], scatter["quantiles"]) == (there["worst"], there["quantiles"])
     assert scatter["worst_percent"] == pytest.approx(100.0 * (there["worst"] / there["nominal"] - 1.0))
-    given = changed(study={"tolerance": {"c": "5 %"}})
-    own = ask(client, "panel/margins", study={**given, "layouts": {"S1": "k | c", "S2": "k | c"}}, **_no_inerter())
-    assert (own["scatter"]["is_assumed"], own["scatter"]["spread"]) == (False, {"c": 0.05})
+
+
+@pytest.mark.parametrize(
+    ("given", "is_assumed", "spread"), [({}, True, {"k": 0.1, "c": 0.2}), ({"c": "5 %"}, False, {"c": 0.05})]
+)
+def test_tolerances_of_a_study_without_an_inerter(
+    client: TestClient, given: dict[str, str], is_assumed: bool, spread: dict[str, float]
+) -> None:
+    study = {**changed(study={"tolerance": given} if given else {}), "layouts": {"S1": "k | c", "S2": "k | c"}}
+    scatter = ask(client, "panel/margins", study=study, **_no_inerter())["scatter"]
+    assert (scatter["is_assumed"], scatter["spread"]) == (is_assumed, spread)
 
 
 def _no_inerter() -> dict[str, Any]:

@@ -126,6 +126,12 @@ class Visitor:
             "() => !document.querySelector('[aria-busy=true]') && document.querySelector('td[data-index]')"
         )
 
+    def chosen(self) -> None:
+        """Wait until the layout has values: those of its optimum, which the page seeks when it opens a study."""
+        self.page.wait_for_function(
+            "() => document.querySelector('nav.decision')?.innerText.includes('not chosen') === false"
+        )
+
     def drawn(self) -> None:
         """Wait until the tab that is shown has its answers, and they are drawn."""
         self.page.evaluate(

@@ -79,5 +79,7 @@ def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
 
 @pytest.fixture
 def visitor(served: Served, visitors: Callable[..., Visitor]) -> Visitor:
-    """A window with the quarter car."""
-    return visitors(served).visit()
+    """A window with the quarter car and its optimum; what is computed before that is an answer to another question."""
+    window = visitors(served).visit()
+    window.chosen()
+    return window

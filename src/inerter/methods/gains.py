@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.formatting import format_number
-from inerter.methods.equivalent_linear import EquivalentLinearModel, remaining_share
+from inerter.methods.equivalent_linear import EquivalentLinearModel, modal_shares
 from inerter.methods.excitation import ExcitedInputs
 from inerter.methods.steady_squares import jump_scatter, relative_bound
 from inerter.norms.h2 import h2
@@ -61,7 +61,7 @@ def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) ->
     whole = h2(system, linear.problem.pade_order)
     if not whole.status.ok:
         return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, 0j)
-    left, pole = remaining_share(system, whole.outputs, period)
+    left, pole = modal_shares(system, whole.outputs).remaining(period)
     unlike = linear.unlike(speeds, whole.outputs) if 2.0 * left > _UNSEEN else 0.0
     return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, pole)
 

@@ -19,8 +19,8 @@ from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
     equivalent_linear_model,
     has_play,
+    modal_shares,
     relative_change,
-    remaining_share,
     with_velocities,
 )
 from inerter.methods.error_bounds import with_error_sources
@@ -51,6 +51,8 @@ _LONGER = 4  # times the length that does not do
 _FIRST = 2  # roads that decide how long the others must be
 _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
+_PEAKED = 1.6  # see `ModalShares.over_lines`
+_MOST_PEAKED = 0.01  # of a mean square by frictions on lines, without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
@@ -98,6 +100,7 @@ class OutOfBandContribution:
     power: Array
     unseen: float = 0.0  # share of the mean squares that may be missing, or too much
     beyond: float = 0.0  # the same of the road outside the band
+    peaked: float = 0.0  # the same by frictions, whose velocities have fewer peaks on lines than on a road
     within_reach: bool = True  # whether longer roads would tell, if the motion stays as it is
     status: Status = OK
     notes: tuple[str, ...] = ()
@@ -143,7 +146,8 @@ def _is_resolved(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandCo
     settled = all(ran.status.ok for ran in found)
     if has_play(design.system) or design.linear is None:
         return settled and max(ran.steady.periods for ran in found) <= _FEW
-    return bool(np.any(np.isinf(missing.power))) or (settled and missing.unseen <= _UNSEEN)
+    is_seen = missing.unseen <= _UNSEEN and missing.peaked <= _MOST_PEAKED
+    return bool(np.any(np.isinf(missing.power))) or (settled and is_seen)
 
 
 def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOfBandContribution:
@@ -169,24 +173,27 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     gains, sampled = _squared_gains(design, speeds)
     inside, seen = lines.power @ gains, lines.power @ sampled
     added = (design.definition.drive.amplitude_density * norms) ** 2 - seen
-    (left, pole), (at_last, _) = (remaining_share(system, norms, time) for time in (excitation.period, design.longest))
+    modes = modal_shares(system, norms)
+    (left, pole), (at_last, _) = modes.remaining(excitation.period), modes.remaining(design.longest)
+    change = linear.unlike(speeds, norms)
+    peaked = _PEAKED * change * modes.over_lines(excitation.period)
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
-    unlike = min(misfit + linear.unlike(speeds, norms), 1.0)  # once the lines tell more
+    unlike = min(misfit + change, 1.0)  # once the lines tell more
     unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:
         unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
     if has_play(design.system) and unseen > _UNSEEN:
-        return OutOfBandContribution(np.zeros(count), unseen, beyond=share, notes=(_UNLIKE,))
+        return OutOfBandContribution(np.zeros(count), unseen, beyond=share, peaked=peaked, notes=(_UNLIKE,))
     if unseen > _LOST:
         return OutOfBandContribution(
-            np.full(count, np.nan), unseen, share, within_reach, _almost_undamped(pole, design.longest)
+            np.full(count, np.nan), unseen, share, peaked, within_reach, _almost_undamped(pole, design.longest)
         )
     taken = (lines.power * (1.0 - lines.kept**2)) @ gains
     unseen += _COARSE * float(np.max(taken / np.maximum(inside, 1e-300)))
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
     measured = road_errors(design.definition, system, pade_order, norms)
-    return OutOfBandContribution(added, unseen, share * unlike, within_reach, status, measured=measured)
+    return OutOfBandContribution(added, unseen, share * unlike, peaked, within_reach, status, measured=measured)
 
 
 @dataclass(frozen=True, eq=False)
@@ -312,7 +319,7 @@ def _errors(missing: OutOfBandContribution, found: Sequence[RoadRun], outputs: i
     return [
         ErrorSource("time step", _STEPPED + jumps),
         steady_state_error([ran.steady for ran in found], _PEAKS),
-        ErrorSource("lines of the road", 0.5 * missing.unseen),
+        ErrorSource("lines of the road", 0.5 * (missing.unseen + missing.peaked)),
         ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * missing.beyond),
     ]
 

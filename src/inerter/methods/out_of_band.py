@@ -51,9 +51,9 @@ _LONGER = 4  # times the length that does not do
 _FIRST = 2  # roads that decide how long the others must be
 _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
-_PEAKED = 1.6  # see `ModalShares.over_lines`
-_MOST_PEAKED = 0.01  # of a mean square by frictions on lines, without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
+_PEAKED = 1.6  # error of a mean square by lines without the peaks of a road, see `ModalShares.over_lines` and 0011
+_MOST_PEAKED = 0.01  # of a mean square, without a longer road
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _IMAGES_WITHIN = 1e-8  # of the largest response to images, which are a per cent of any line, or less
@@ -100,7 +100,7 @@ class OutOfBandContribution:
     power: Array
     unseen: float = 0.0  # share of the mean squares that may be missing, or too much
     beyond: float = 0.0  # the same of the road outside the band
-    peaked: float = 0.0  # the same by frictions, whose velocities have fewer peaks on lines than on a road
+    peaked: float = 0.0  # the same by frictions, whose velocities have lower peaks on lines than on a road
     within_reach: bool = True  # whether longer roads would tell, if the motion stays as it is
     status: Status = OK
     notes: tuple[str, ...] = ()
@@ -124,19 +124,29 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun]
     """The design on roads long enough to resolve its response, the first runs there, and the out-of-band rest.
 
     On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
-    is tried even if the motion is out of reach as it is.
+    is tried even if the motion is out of reach as it is. Where friction is much of the damping, they are longer still,
+    so that a resonance has more lines.
     """
-    found = design.runs(0, _FIRST, pool)
-    usual = design, found, out_of_band_contribution(design, found)
-    longer, found, missing = usual
+    usual = longer, found, missing = _first_runs(design, pool)
     while not _is_resolved(longer, found, missing):
-        period = _LONGER * longer.excitation.period
-        if period > design.longest or (longer is not design and not missing.within_reach):
+        if _LONGER * longer.excitation.period > design.longest or (longer is not design and not missing.within_reach):
             return usual
-        longer = replace(longer, excitation=replace(longer.excitation, period=period))
-        found = longer.runs(0, _FIRST, pool)
-        missing = out_of_band_contribution(longer, found)
+        longer, found, missing = _first_runs(_on_longer_roads(longer), pool)
+    while missing.peaked > _MOST_PEAKED and _LONGER * longer.excitation.period <= design.longest:
+        tried = _first_runs(_on_longer_roads(longer), pool)
+        if not (np.all(np.isfinite(tried[2].power)) and _is_resolved(*tried)):
+            break
+        longer, found, missing = tried
     return longer, found, missing
+
+
+def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], OutOfBandContribution]:
+    found = design.runs(0, _FIRST, pool)
+    return design, found, out_of_band_contribution(design, found)
+
+
+def _on_longer_roads(design: OnRoads) -> OnRoads:
+    return replace(design, excitation=replace(design.excitation, period=_LONGER * design.excitation.period))
 
 
 def _is_resolved(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandContribution) -> bool:
@@ -146,8 +156,7 @@ def _is_resolved(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandCo
     settled = all(ran.status.ok for ran in found)
     if has_play(design.system) or design.linear is None:
         return settled and max(ran.steady.periods for ran in found) <= _FEW
-    is_seen = missing.unseen <= _UNSEEN and missing.peaked <= _MOST_PEAKED
-    return bool(np.any(np.isinf(missing.power))) or (settled and is_seen)
+    return bool(np.any(np.isinf(missing.power))) or (settled and missing.unseen <= _UNSEEN)
 
 
 def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOfBandContribution:

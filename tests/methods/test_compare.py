@@ -197,8 +197,10 @@ def test_with_a_gap_differences_are_taken_road_by_road():
 def test_a_design_that_needs_longer_roads_gives_them_to_the_other():
     ringing = paper_quarter_car(k | Damper(300.0) | Friction(20.0))
     found = it.compare(ringing, series(10.0), J3, ExpectedValue(realisations=3))
-    assert found.first.period == found.second.period == 40
-    alone = it.evaluate(series(10.0), J3, ExpectedValue(realisations=3, period=40))
+    period = found.first.period
+    assert period is not None
+    assert found.second.period == period > 10
+    alone = it.evaluate(series(10.0), J3, ExpectedValue(realisations=3, period=period))
     assert found.second == alone
     assert it.evaluate(series(10.0), J3, ExpectedValue(realisations=3)).period == 10
 

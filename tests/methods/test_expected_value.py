@@ -181,7 +181,8 @@ def test_friction_as_the_only_damping_is_simulated():
     found = it.evaluate(paper_quarter_car(k | Friction(500.0)), J1, TWO)
     assert found.status.ok
     assert not found.notes
-    for value, road in zip(found.samples, roads(TWO), strict=True):
+    short = it.evaluate(paper_quarter_car(k | Friction(500.0)), J1, replace(TWO, period=10))
+    for value, road in zip(short.samples, roads(TWO), strict=True):
         run = it.simulate(paper_quarter_car(k | Friction(500.0)), road=road, initial="periodic")
         assert value == pytest.approx(run["sprung_acceleration"][:-1].std(), rel=1e-3)
 
@@ -235,8 +236,8 @@ def test_a_resonance_between_the_lines_of_the_road_asks_for_a_longer_one(index):
     soft = paper_quarter_car(k | Damper(300.0) | Friction(20.0))
     found = it.evaluate(soft, index, ExpectedValue(realisations=8))
     assert found.status.ok
-    assert found.period == 40
-    for period in (80, 160):
+    assert found.period == 160
+    for period in (80, 320):
         longer = it.evaluate(soft, index, ExpectedValue(realisations=4, period=period, seed=1))
         assert longer.period == period
         assert abs(found.value - longer.value) < 3.0 * math.hypot(found.standard_error, longer.standard_error)

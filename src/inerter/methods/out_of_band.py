@@ -328,7 +328,8 @@ def _errors(missing: OutOfBandContribution, found: Sequence[RoadRun], outputs: i
     return [
         ErrorSource("time step", _STEPPED + jumps),
         steady_state_error([ran.steady for ran in found], _PEAKS),
-        ErrorSource("lines of the road", 0.5 * (missing.unseen + missing.peaked)),
+        ErrorSource("lines of the road", 0.5 * missing.unseen),
+        ErrorSource("few lines in a resonance", 0.5 * missing.peaked),
         ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * missing.beyond),
     ]
 

@@ -190,7 +190,9 @@ SELDOM = [  # those that take long, and of which a part, or what is much the sam
     SHOWN,
     SLOW,
     "inerter export van-results --layout S3 --index J1 --to matlab --linear -o van.m",
+    "inerter search examples/search_quarter_car.toml",
     "inerter identify bench.csv --model ball-screw",
+    "inerter identify bench.csv --config rig.toml --force",
     "inerter identify slow.tdms fast.tdms --model ball-screw --unit force=kgf -o bench",
     'inerter identify fit.csv --model choose --force-bandwidth "300 Hz" --trim 0:2',
 ]

@@ -25,7 +25,7 @@ def car(damping: float) -> it.QuarterCar:
 CARS, SIGNALS = [car(1e3), car(3e3)], [it.multisine(ROAD, seed=seed) for seed in range(3)]
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_each_file_holds_what_a_simulation_says(tmp_path: Path) -> None:
     told: list[float] = []
     with ProcessPoolExecutor(2, get_context("spawn")) as executor:

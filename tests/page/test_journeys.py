@@ -210,6 +210,14 @@ def test_a_long_sweep_is_stopped_and_survives_a_reload(visitor: Visitor) -> None
     stopped.wait_for(state="detached")
 
 
+def test_a_server_that_goes_while_the_page_begins_is_lost(served: Served, visitors: Any) -> None:
+    """Not one that the page has yet to find: what was asked before is on the page."""
+    visitor = visitors(served)
+    visitor.page.route("**/api/work*", lambda route: route.abort())
+    visitor.visit()
+    visitor.page.wait_for_selector("[data-connection=lost]", timeout=20_000)
+
+
 def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: Any) -> None:
     served = serve(EXAMPLES / "quarter-car.toml")
     visitor = visitors(served).visit()

@@ -73,7 +73,7 @@ async function connect() {
       windows.postMessage({ ask: true });
       store.dispatch({ type: "connected", connection: "refused" });
     } else if (error instanceof Lost) {
-      store.dispatch({ type: "connected", connection: "connecting" });
+      store.dispatch({ type: "connected", connection: begun ? "lost" : "connecting" });
       setTimeout(connect, AGAIN);
     } else throw error;
   }

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from app.conftest import DOCUMENT, ask, changed
+from app.conftest import DOCUMENT, ask, changed, threads
 from campaigns import sampled
 from folders import EXAMPLES
 from starlette.testclient import TestClient
 
 import inerter as it
 from inerter.app import documents, fit_advice
+from inerter.app.lanes import Lane
+from inerter.app.server import Server
 from inerter.app.start import InitialStudy
+from inerter.app.warming import Warming
 from inerter.files.common.toml import as_toml
 from inerter.files.identification.loading import identification_of
 from inerter.files.rig.loading import load_rig
@@ -112,6 +116,29 @@ def test_the_study_of_the_command_line_is_that_of_its_file(tmp_path: Path) -> No
     assert start.stamp() == {"name": "mine.toml", "stamp": ""}
     assert start.to_dict()["problems"]
     assert InitialStudy().to_dict() == {"name": "", "text": "", "study": {}, "problems": [], "stamp": ""}
+
+
+@pytest.mark.parametrize("text", ["broken = [", "[study]\nx = 1", ""])
+def test_all_processes_begin_whatever_the_file_of_the_command_line(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server = Server(tmp_path, InitialStudy.of("mine.toml", text, None), process=threads)
+    begun = {name: asyncio.Event() for name in server.lanes}
+
+    async def begin(lane: Lane) -> None:
+        next(begun[name] for name, one in server.lanes.items() if one is lane).set()
+
+    async def warm(warming: Warming, worker: Any) -> None:
+        warming.done.set()
+
+    monkeypatch.setattr(Lane, "begin", begin)
+    monkeypatch.setattr(Warming, "run", warm)
+
+    async def run() -> None:
+        async with server.running():
+            await asyncio.wait_for(asyncio.gather(begun["quick"].wait(), begun["slow"].wait()), 60.0)
+
+    asyncio.run(run())
 
 
 def test_work_has_a_title_of_its_own_and_no_step_once_it_is_done(client: TestClient) -> None:

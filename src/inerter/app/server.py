@@ -67,8 +67,9 @@ class Server:
 
     async def _begin_quick(self) -> None:
         await self.lanes["quick"].begin()
-        with suppress(Refusal):  # the structures of its designs are found before a page asks
-            await self.check(self.start.document["study"])
+        if study := self.start.document["study"]:  # none of a file that cannot be read
+            with suppress(Refusal):  # the structures of its designs are found before a page asks
+                await self.check(study)
 
     async def check(self, study: dict[str, Any]) -> bytes:
         """What is to be known of a study document before any work."""

@@ -408,7 +408,7 @@ def test_a_simulation_file_names_them_too(known, tmp_path):
     text = head + '[signal]\nkind = "multisine"\n[simulation]\nlayout = "S1"\nduration = "1 s"\n'
     request = load_simulation(written(tmp_path, text=text))
     assert request.elements["d"] == slopes()
-    with pytest.raises(StudyError, match=r"elements\.J: .*moment; expected one value"):
+    with pytest.raises(StudyError, match=r"elements\.J\.moment: got a table: not a quantity"):
         load_simulation(written(tmp_path, screw=RANGE, text=text))
 
 
@@ -428,23 +428,22 @@ def test_the_whole_command_has_words_for_a_switch_of_its_own(known, tmp_path, ca
     [
         (
             '{ kind = "spark plug" }',
-            'got kind = "spark plug": not a kind of element; expected one of "spring", "damper"',
+            '.kind: got "spark plug": not a kind of element; available in this version: "spring"',
         ),
-        ("{ kind = 3 }", "got kind = 3: not a kind of element"),
-        (DAMPER.replace("knee", "elbow"), '"elbow": not a key of a digressive damper; expected damping, beyond, knee'),
-        (DAMPER.replace(', knee = "50 mm/s"', ""), 'got no knee of the digressive damper; expected knee = "1 m/s".'),
-        (DAMPER.replace("50 mm/s", "50 mm"), '"50 mm": incompatible unit "mm" (millimeter)'),
-        (DAMPER.replace("50 mm/s", "-50 mm/s"), 'got knee = "-50 mm/s": not positive'),
-        (DAMPER.replace('"3 kN s/m"', '{ from = "1 N s/m" }'), "got a table for damping; expected a range"),
-        (DAMPER.replace('"3 kN s/m"', '{ from = "2 N s/m", to = "1 N s/m" }'), "reversed ends of damping"),
+        ("{ kind = 3 }", ".kind: got 3: not a kind of element"),
+        (DAMPER.replace("}", ', elbow = "1 m" }'), ".elbow: unknown key; expected one of kind, damping, beyond, knee."),
+        (DAMPER.replace(', knee = "50 mm/s"', ""), '.knee: missing; expected knee = "1 m/s".'),
+        (DAMPER.replace("50 mm/s", "50 mm"), '.knee: got "50 mm": incompatible unit "mm" (millimeter)'),
+        (DAMPER.replace("50 mm/s", "-50 mm/s"), '.knee: got "-50 mm/s": not positive'),
+        (DAMPER.replace('"3 kN s/m"', '{ from = "1 N s/m" }'), ".damping: got a table with"),
+        (DAMPER.replace('"3 kN s/m"', '{ from = "2 N s/m", to = "1 N s/m" }'), ".damping: got reversed ends"),
     ],
 )
 def test_what_is_wrong_with_their_entries_is_told(entry, said, known, tmp_path):
     with pytest.raises(StudyError) as caught:
         load_study(written(tmp_path, damper=entry))
     (line,) = str(caught.value).splitlines()
-    assert line.startswith("own.toml: elements.d: ")
-    assert said in line
+    assert line.startswith(f"own.toml: elements.d{said}")
 
 
 def test_a_study_knows_that_a_norm_does_not_see_all_of_them(known, tmp_path):

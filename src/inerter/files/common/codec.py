@@ -15,10 +15,9 @@ from typing import Any, ClassVar, TypeVar, dataclass_transform
 from inerter.errors import InerterError
 from inerter.files.common.kinds import kind_with
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError, Problem
+from inerter.files.common.problem import EntryError, Problem, invalid_entry
 from inerter.files.common.schema import INSTEAD, example_value
 from inerter.files.common.suggest import nearest
-from inerter.units import quote_value
 
 INVALID: Any = object()  # stands for an entry that cannot be read
 REQUIRED: Any = object()  # the default of a key that must be given
@@ -60,7 +59,7 @@ class LoadContext:
     def as_table(self, raw: Any) -> Mapping[str, Any]:
         """The entry, if it is a table; raises `EntryError` for another."""
         if not isinstance(raw, Mapping):
-            raise EntryError(got=quote_value(raw), fault="not a table", expected=self.example)
+            raise invalid_entry(raw, fault="not a table", expected=self.example)
         return raw
 
 

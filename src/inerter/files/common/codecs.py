@@ -8,9 +8,8 @@ from typing import Any
 
 from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, RawEntry, TableCodec
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.systems.outputs import rename_output
-from inerter.units import quote_value
 
 
 @dataclass(frozen=True)
@@ -162,7 +161,7 @@ class RowsCodec(Codec):
     def load(self, raw: Any, context: LoadContext) -> Any:
         """The values of the tables, in their order."""
         if not isinstance(raw, list):
-            raise EntryError(got=quote_value(raw), fault="not a list of tables", expected=context.example)
+            raise invalid_entry(raw, fault="not a list of tables", expected=context.example)
         *above, name = context.place
         rows = (replace(context, place=(*above, f"{name}[{i}]")) for i in range(1, len(raw) + 1))
         return tuple(inside.read(self.item, entry) for inside, entry in zip(rows, raw, strict=True))

@@ -6,18 +6,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
-from inerter.errors import UnitError
-from inerter.field_metadata import Field
-from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, RawEntry, TableCodec
-from inerter.files.common.codecs import NamesCodec, any_of
+from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, RawEntry, TableCodec, section
+from inerter.files.common.codecs import NamesCodec, TaggedCodec, any_of
 from inerter.files.common.entries import (
     AMOUNT,
     LOWER,
     UPPER,
     Amount,
+    QuantityCodec,
     amount,
     check_order,
     element_name,
+    one_of,
     other_bound,
     text_of,
     with_bounds,
@@ -25,17 +25,14 @@ from inerter.files.common.entries import (
 from inerter.files.common.free_networks import FREE_NETWORK, is_free_network
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, collect_problem
-from inerter.files.common.schema import or_range_schema, quantity_schema
-from inerter.files.common.sizes import check_size
-from inerter.files.common.suggest import nearest
 from inerter.files.common.ties import TIED, TieEntry, is_tie, tie_entry, tie_schema, tie_text, tied_element
 from inerter.networks.elements import NAME, Element, Free, Tied
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
 from inerter.networks.free_network import FreeNetwork
 from inerter.networks.parser import rename_in_expression
-from inerter.units import parse_quantity, quote_value
 
 KIND = "kind"
+_WHY = "Kind of element, where the unit alone does not determine it."
 
 
 class Range(NamedTuple):
@@ -83,7 +80,8 @@ class ElementCodec(Codec):
             found = FREE_NETWORK.load(raw, context)
             return found if found is INVALID else replace(found, name=name)  # type: ignore[no-any-return]
         if _names_kind(raw):
-            return _of_kind(raw, name, free=self.free)
+            made = _kinds_codec(self.free).load(raw, context)
+            return made if made is INVALID else _with_name(made, name)
         if not isinstance(raw, dict):
             value = amount(raw)
             return kinds_by_unit()[value.unit].of(value.value, name)
@@ -99,21 +97,18 @@ class ElementCodec(Codec):
         """Value or range alone where the unit determines the kind of element; else a table."""
         if isinstance(value, FreeNetwork):
             return FREE_NETWORK.dump(value)
-        number, unit = value.value, value.unit
-        if isinstance(number, Tied):
-            return {TIED: tie_text(number)}
-        alone = text_of(number, unit)
-        if kinds_by_unit().get(unit) is type(value):
-            return alone
-        more = {field.name: text_of(getattr(value, field.name), field.unit) for field in value.more}
-        return {KIND: value.key, value.quantity: alone, **more}
+        if isinstance(value.value, Tied):
+            return {TIED: tie_text(value.value)}
+        if kinds_by_unit().get(value.unit) is type(value):
+            return text_of(value.value, value.unit)
+        return _kinds_codec(self.free).dump(value)
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of all forms."""
         ties = [tie_schema()] if self.tied else []
         ranges = [RANGE.schema()] if self.free else []
         networks = [FREE_NETWORK.schema()] if self.networks else []
-        return any_of([*ranges, AMOUNT.schema(), _kind_schema(), *ties, *networks])
+        return any_of([*ranges, AMOUNT.schema(), _kinds_codec(self.free).schema(), *ties, *networks])
 
     def numbers(self, value: Element | TieEntry | FreeNetwork, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """Value of the element with its bounds, and its further numbers, by their keys; none of a free network."""
@@ -207,66 +202,29 @@ def _names_kind(entry: Any) -> bool:
     return isinstance(entry, dict) and KIND in entry
 
 
-def _of_kind(entry: dict[str, Any], name: str, *, free: bool) -> Element:
-    """The element of an entry that names its kind; raises ValueError for what is wrong with it."""
-    named = entry[KIND]
-    if not isinstance(named, str) or named not in ELEMENTS:
-        listed = ", ".join(map(quote_value, ELEMENTS))
-        raise EntryError(got=f"kind = {quote_value(named)}", fault="not a kind of element", expected=f"one of {listed}")
-    kind = ELEMENTS[named]
-    fields = {field.name: field for field in kind.fields()}
-    for key in entry:
-        if key not in (KIND, *fields):
-            hint = nearest(key, fields)
-            raise EntryError(
-                got=quote_value(key), fault=f"not a key of a {named}", expected=", ".join(fields), hint=hint
-            )
-    for key, field in fields.items():
-        if key not in entry:
-            example = f'{key} = "1 {field.unit}"'
-            raise EntryError(got=f"no {key} of the {named}", expected=example, hint=field.sentence)
-    value, *more = fields.values()
-    amounts = {field.name: _amount(field, entry[field.name], False) for field in more}
-    given = entry[value.name]
-    if not isinstance(given, dict):
-        return kind.of(_amount(value, given, kind.may_vanish), name, **amounts)
-    if not free or set(given) != {"from", "to"}:
-        expected = f'a range {{ from = "1 {value.unit}", to = "2 {value.unit}" }}' if free else "one value"
-        raise EntryError(got=f"a table for {value.name}", expected=expected)
-    lower, upper = (_amount(value, given[end], kind.may_vanish) for end in ("from", "to"))
-    if not lower < upper:
-        ends = f"equal or reversed ends of {value.name}"
-        raise EntryError(got=ends, expected="from less than to", hint="Swap them.")
-    return kind.of(Free(lower, upper, name), name, **amounts)
+def _with_name(element: Element, name: str) -> Element:
+    """The element by that name, which its free value has too."""
+    value = replace(element.value, name=name) if isinstance(element.value, Free) else element.value
+    return replace(element, name=name, **{element.quantity: value})  # type: ignore[type-var]
 
 
-def _kind_schema() -> dict[str, Any]:
-    """The JSON Schema of an entry that names its kind."""
-    return {"anyOf": [_schema_of(name, kind) for name, kind in ELEMENTS.items()]}
+def _kinds_codec(free: bool) -> TaggedCodec:
+    """The tables of elements that name their kind; the value may be `free`."""
+    check = one_of("a kind of element", ELEMENTS)
+    return TaggedCodec(KIND, lambda: {k: _kind_table(one, free) for k, one in ELEMENTS.items()}, check, _key, "spring")
 
 
-def _schema_of(name: str, kind: type[Element]) -> dict[str, Any]:
-    least = "not negative" if kind.may_vanish else "positive"
+def _key(element: Element) -> str:
+    return element.key
+
+
+def _kind_table(kind: type[Element], free: bool) -> TableCodec:
+    """The numbers of an element, each by its name."""
     value, *more = kind.fields()
-    one = quantity_schema(value.unit, least=least)
-    texts = {
-        field.name: {**quantity_schema(field.unit, least="positive"), "description": field.sentence} for field in more
-    }
-    keys = {
-        KIND: {"const": name, "description": "Kind of element, where the unit alone does not determine it."},
-        value.name: {**or_range_schema(one), "description": value.sentence},
-        **texts,
-    }
-    return {"type": "object", "properties": keys, "required": list(keys), "additionalProperties": False}
-
-
-def _amount(field: Field, text: Any, may_vanish: bool) -> float:
-    try:
-        amount = parse_quantity(text, field.unit)
-    except UnitError as error:
-        raise ValueError(f"{field.name}: {error}") from None
-    check_size(amount, text, field.unit)
-    if amount < 0.0 or (amount == 0.0 and not may_vanish):
-        given = f"{field.name} = {quote_value(text)}"
-        raise EntryError(got=given, fault="not positive", expected=f"more than 0 {field.unit}")
-    return amount
+    codecs = [QuantityCodec(value.unit, "not negative" if kind.may_vanish else "positive", free)]
+    codecs += [QuantityCodec(field.unit) for field in more]
+    keys = (
+        section(field.name, codec, field.sentence, f'{field.name} = "1 {field.unit}"')
+        for field, codec in zip((value, *more), codecs, strict=True)
+    )
+    return TableCodec(tuple(keys), kind, tag=(KIND, kind.key, _WHY))

@@ -9,7 +9,7 @@ from typing import Any, ClassVar, NamedTuple
 from inerter.field_metadata import Field, TextChoice
 from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, LoadContext, Scalar
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
@@ -38,10 +38,10 @@ _LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQ
 
 
 class Amount(NamedTuple):
-    """The value of an element or of a coordinate in the SI unit that tells its kind."""
+    """A value in the SI unit that tells its kind: of an element, of a coordinate, of an excitation."""
 
     unit: str
-    value: float
+    value: Any  # a number; a `Free` where it is a range
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,8 @@ class QuantityCodec(Codec):
     def load(self, raw: Any, context: LoadContext) -> float | Free:
         """The value in its unit, or the free value, which has the name of its key."""
         if self.free and isinstance(raw, dict):
-            return range_of(raw, lambda end: Amount(self.unit, positive_in(end, self.unit)), self.unit, context)[1]
+            found = range_of(raw, lambda end: Amount(self.unit, positive_in(end, self.unit)), self.unit, context)
+            return found.value  # type: ignore[no-any-return]
         match self.least:
             case "positive":
                 return positive_in(raw, self.unit)
@@ -91,15 +92,15 @@ class QuantityCodec(Codec):
         return other_bound(value, keys[0], number) if keys else number
 
 
-def range_of(raw: Mapping[str, Any], end: Callable[[Any], Amount], unit: str, context: LoadContext) -> tuple[str, Free]:
-    """Unit and free value of a table with the two ends of a range; `unit` is that of the example in messages."""
+def range_of(raw: Mapping[str, Any], end: Callable[[Any], Amount], unit: str, context: LoadContext) -> Amount:
+    """Free value of a table with the two ends of a range; `unit` is that of the example in messages."""
     if set(raw) != {LOWER, UPPER}:
         listed = ", ".join(map(quote_value, raw)) or "nothing"
         expected = f'one value, or {{ from = "1 {unit}", to = "2 {unit}" }}'
         raise EntryError(got=f"a table with {listed}", expected=expected)
     lower, upper = end(raw[LOWER]), end(raw[UPPER])
     check_order(lower, upper)
-    return lower.unit, Free(lower.value, upper.value, context.place[-1])
+    return Amount(lower.unit, Free(lower.value, upper.value, context.place[-1]))
 
 
 def text_of(value: float | Free, unit: str) -> str | dict[str, str]:
@@ -143,7 +144,7 @@ def not_negative_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is zero or more."""
     value = check_size(parse_quantity(text, unit), text, unit)
     if value < 0.0:
-        raise EntryError(got=quote_value(text), fault="negative", expected=f"0 {unit} or more")
+        raise invalid_entry(text, fault="negative", expected=f"0 {unit} or more")
     return value
 
 
@@ -151,7 +152,7 @@ def positive_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is greater than zero."""
     value = check_size(parse_quantity(text, unit), text, unit)
     if value <= 0.0:
-        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {unit}")
+        raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}")
     return value
 
 
@@ -174,7 +175,7 @@ def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: boo
 def positive_number(value: Any) -> float:
     """A number greater than zero, without a unit."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
-        raise EntryError(got=quote_value(value), expected="a positive number without quotes, such as 1.02")
+        raise invalid_entry(value, expected="a positive number without quotes, such as 1.02")
     return float(value)
 
 
@@ -184,7 +185,7 @@ POSITIVE = Scalar(positive_number, lambda: {"type": "number", "exclusiveMinimum"
 def yes_or_no(value: Any) -> bool:
     """True or false."""
     if not isinstance(value, bool):
-        raise EntryError(got=quote_value(value), expected="true or false, without quotes")
+        raise invalid_entry(value, expected="true or false, without quotes")
     return value
 
 
@@ -215,7 +216,7 @@ def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
     check_size(value, text, unit)
     if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
         hint = "To leave the element out, drop its branch from the layouts."
-        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {unit}", hint=hint)
+        raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}", hint=hint)
     return Amount(unit, value)
 
 
@@ -225,7 +226,7 @@ YES_OR_NO = Scalar(yes_or_no, lambda: {"type": "boolean"})
 def text(value: Any) -> str:
     """A title or a name."""
     if not isinstance(value, str) or not value.strip() or len(value) > 200:
-        raise EntryError(got=quote_value(value), expected='text of 1 to 200 characters in quotes, such as "My car"')
+        raise invalid_entry(value, expected='text of 1 to 200 characters in quotes, such as "My car"')
     return value
 
 
@@ -258,7 +259,7 @@ def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
     def check(value: Any) -> str:
         if not isinstance(value, str) or value not in known:
             available = f"not {what}; available in this version: {', '.join(quote_value(name) for name in known)}"
-            raise EntryError(got=quote_value(value), fault=available, hint=nearest(value, known))
+            raise invalid_entry(value, fault=available, hint=nearest(value, known))
         return value
 
     return check
@@ -337,7 +338,7 @@ def whole(lower: int, upper: int) -> Codec:
 
     def check(value: Any) -> int:
         if not isinstance(value, int) or isinstance(value, bool) or not lower <= value <= upper:
-            raise EntryError(got=quote_value(value), expected=f"a whole number from {lower} to {upper}, without quotes")
+            raise invalid_entry(value, expected=f"a whole number from {lower} to {upper}, without quotes")
         return value
 
     return Scalar(check, lambda: {"type": "integer", "minimum": lower, "maximum": upper})
@@ -346,7 +347,7 @@ def whole(lower: int, upper: int) -> Codec:
 def share(value: Any) -> float:
     """A number between zero and one, without a unit."""
     if not isinstance(value, float) or not 0.0 < value < 1.0:
-        raise EntryError(got=quote_value(value), expected="a number between 0 and 1 without quotes, such as 0.01")
+        raise invalid_entry(value, expected="a number between 0 and 1 without quotes, such as 0.01")
     return value
 
 
@@ -356,7 +357,7 @@ SHARE = Scalar(share, lambda: SHARE_SCHEMA)
 def expression(value: Any) -> str:
     """Expression of a network; its syntax is checked once all elements are known."""
     if not isinstance(value, str):
-        raise EntryError(got=quote_value(value), expected='a network in quotes, such as "k | c - b"')
+        raise invalid_entry(value, expected='a network in quotes, such as "k | c - b"')
     if len(value) > _LONGEST_EXPRESSION or value.count("(") > _MOST_BRACKETS:
         raise EntryError(
             got=f"a network of {len(value)} characters with {value.count('(')} brackets",
@@ -389,18 +390,18 @@ def element_name(name: Any) -> str:
     """Name valid in a network expression and not used by results themselves; raises `EntryError` for another."""
     if not NAME.fullmatch(name):
         letters = "a letter followed by letters, digits and underscores, such as k1"
-        raise EntryError(got=quote_value(name), fault="not a name", expected=letters)
+        raise invalid_entry(name, fault="not a name", expected=letters)
     if name in _TAKEN:
         taken = "a word that results use themselves"
-        raise EntryError(got=quote_value(name), fault=taken, expected="another name, such as k1")
+        raise invalid_entry(name, fault=taken, expected="another name, such as k1")
     return str(name)
 
 
 def layout_name(name: Any) -> str:
     """A name that can stand in a table and in the name of a file."""
     if not 0 < len(name) <= 40 or not _LAYOUT_NAME_CHARACTERS.issuperset(name) or name[0] in ".-+":
-        raise EntryError(
-            got=quote_value(name),
+        raise invalid_entry(
+            name,
             fault="not a layout name, which also names files",
             expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, such as S3e",
         )

@@ -57,6 +57,11 @@ class EntryError(ValueError):
         return f"{sentence[0].upper()}{sentence[1:]}"
 
 
+def invalid_entry(entry: object, *, fault: str = "", expected: str = "", hint: str = "") -> EntryError:
+    """The error of an entry, which its message shows as it arrived."""
+    return EntryError(got=quote_value(entry), fault=fault, expected=expected, hint=hint)
+
+
 def at(
     place: Iterable[str], said: str = "", *, got: str = "", fault: str = "", expected: str = "", hint: str = ""
 ) -> Problem:

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.errors import RecordError
 from inerter.files.common.entries import positive_in
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.suggest import nearest
 from inerter.formatting import format_quantity
 from inerter.records.remedy import Action, Remedy
@@ -95,10 +95,10 @@ def _key(remedy: Remedy) -> str:
 
 def _table(value: Any, known: tuple[str, ...], example: str) -> dict[str, Any]:
     if not isinstance(value, dict) or not value:
-        raise EntryError(got=quote_value(value), expected=f"a table such as {example}")
+        raise invalid_entry(value, expected=f"a table such as {example}")
     for role in value:
         if role not in known:
-            raise EntryError(got=quote_value(role), expected=f"one of {', '.join(known)}", hint=nearest(role, known))
+            raise invalid_entry(role, expected=f"one of {', '.join(known)}", hint=nearest(role, known))
     return value
 
 

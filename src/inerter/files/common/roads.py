@@ -24,13 +24,12 @@ from inerter.files.common.codec import (
     without_none,
 )
 from inerter.files.common.entries import TEXT, QuantityCodec, declaration_of, word
-from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problem import EntryError, Problem, at, invalid_entry
 from inerter.files.common.suggest import some
 from inerter.formatting import format_number, format_quantity, format_range, format_share
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
-from inerter.units import quote_value
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 
@@ -49,7 +48,7 @@ _FEWEST = 12  # bands of a line, which are an octave, without a warning
 
 def _from_minus_one(value: Any) -> float:
     if not is_number(value) or not -1.0 <= value <= 1.0:
-        raise EntryError(got=quote_value(value), expected="a number from -1 to 1 without quotes, such as 0.6")
+        raise invalid_entry(value, expected="a number from -1 to 1 without quotes, such as 0.6")
     return float(value)
 
 
@@ -266,7 +265,7 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
     try:
         if not path.is_file():
             place = "in the folder of this file" if Path(name).name == name else "as seen from this file"
-            raise EntryError(got=quote_value(name), fault=f"file not found {place}", expected=_PROFILE)
+            raise invalid_entry(name, fault=f"file not found {place}", expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         measured = profiles.read(path, road["columns"], road["units"], road["interval"])
         spectrum = road_spectrum(measured, side=side, sampling=sampling)

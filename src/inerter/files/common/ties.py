@@ -6,7 +6,7 @@ import ast
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import invalid_entry
 from inerter.files.common.suggest import nearest, some
 from inerter.networks.elements import Element, Tied, tied
 from inerter.networks.elements.registry import kinds_by_unit
@@ -40,10 +40,10 @@ def tie_entry(entry: dict[str, Any]) -> TieEntry:
     """Expression of a tied entry; raises `EntryError` for what is wrong with it."""
     others = [key for key in entry if key != TIED]
     if others:
-        raise EntryError(got=quote_value(others[0]), fault="not a key of a tied value", expected='tied = "..." alone')
+        raise invalid_entry(others[0], fault="not a key of a tied value", expected='tied = "..." alone')
     text = entry[TIED]
     if not isinstance(text, str) or not text.strip() or len(text) > _LONGEST:
-        raise EntryError(got=quote_value(text), expected=_EXAMPLE)
+        raise invalid_entry(text, expected=_EXAMPLE)
     _tree(text)
     return TieEntry(text)
 
@@ -60,14 +60,12 @@ def tied_element(name: str, entry: TieEntry, elements: Mapping[str, Element]) ->
     """Element of that name, tied to `elements`. Raises `EntryError` if there is none such."""
     found = _part(_tree(entry.expression), entry.expression, elements)
     if not isinstance(found.value, Tied):
-        raise EntryError(got=quote_value(entry.expression), fault="it names no element", expected=_EXAMPLE)
+        raise invalid_entry(entry.expression, fault="it names no element", expected=_EXAMPLE)
     for unit, kind in kinds_by_unit().items():
         if are_compatible(unit, found.unit):
             return kind.of(found.value, name)
     known = ", ".join(kinds_by_unit())
-    raise EntryError(
-        got=quote_value(entry.expression), fault=f"it is in {found.unit}", expected=f"a value in one of {known}"
-    )
+    raise invalid_entry(entry.expression, fault=f"it is in {found.unit}", expected=f"a value in one of {known}")
 
 
 def with_known_values(elements: Mapping[str, Element]) -> dict[str, Element]:
@@ -100,7 +98,7 @@ def _tree(text: str) -> ast.expr:
     try:
         return ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise EntryError(got=quote_value(text), fault="it cannot be read", expected=_EXAMPLE) from None
+        raise invalid_entry(text, fault="it cannot be read", expected=_EXAMPLE) from None
 
 
 def _part(node: ast.expr, text: str, elements: Mapping[str, Element]) -> _Part:
@@ -109,16 +107,16 @@ def _part(node: ast.expr, text: str, elements: Mapping[str, Element]) -> _Part:
     if isinstance(node, ast.Name):
         if node.id not in elements:
             missing = f"unknown element {quote_value(node.id)}; elements with a value: {some(elements)}"
-            raise EntryError(got=quote_value(text), fault=missing, hint=nearest(node.id, elements))
+            raise invalid_entry(text, fault=missing, hint=nearest(node.id, elements))
         return _Part(tied(node.id), elements[node.id].unit)
     if not isinstance(node, ast.BinOp) or type(node.op) not in _SIGNS:
-        raise EntryError(got=quote_value(text), fault="it cannot be read", expected=_EXAMPLE)
+        raise invalid_entry(text, fault="it cannot be read", expected=_EXAMPLE)
     sign = _SIGNS[type(node.op)]
     first, second = (_part(side, text, elements) for side in (node.left, node.right))
     if sign in "+-":
         if not are_compatible(first.unit, second.unit):
             fault = f"{first.unit} and {second.unit} cannot be added or subtracted"
-            raise EntryError(got=quote_value(text), fault=fault, expected="values of one unit")
+            raise invalid_entry(text, fault=fault, expected="values of one unit")
         return _Part(_apply_operator(sign, first.value, second.value), first.unit)
     return _Part(_apply_operator(sign, first.value, second.value), combine_units(first.unit, sign, second.unit))
 

@@ -27,13 +27,13 @@ def value_of(codec: TableCodec, tables: Mapping[str, Any], path: Path) -> Any:
 
     Raises `StudyError` with a sentence for a file of another kind, or with a line for every entry that does not fit.
     """
+    value, problems = load_tables(codec, tables)
+    if not problems:
+        return value
     if (mistaken := mistaken_kinds(tables, codec.names)) is not None:
         found, wanted = mistaken
         raise _mistaken(path, found, f"a {wanted.singular} for inerter {wanted.command}")
-    value, problems = load_tables(codec, tables)
-    if problems:
-        raise refusal(path, problems)
-    return value
+    raise refusal(path, problems)
 
 
 def read_tables(path: Path, what: str) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from inspect import getdoc
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 from inerter.errors import RegistryError, UnitError
 from inerter.field_metadata import fields_of
@@ -37,10 +37,10 @@ from inerter.files.common.entries import (
     word,
 )
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import invalid_entry
 from inerter.files.common.schema import or_range_schema, quantity_schema
 from inerter.networks.elements import NAME, Free
-from inerter.units import PURE, parse_one_of, parse_quantity, quote_value
+from inerter.units import PURE, parse_one_of, parse_quantity
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 from inerter.vehicle.registry import VEHICLES
@@ -56,26 +56,12 @@ class Length(float):
     """The lever of an angle [m]."""
 
 
-class Inertia(NamedTuple):
-    """Mass [kg] of a coordinate, or moment of inertia [kg m^2] of an angle."""
-
-    unit: str
-    value: float | Free
-
-    @property
-    def angle(self) -> bool:
-        """Whether it is a moment of inertia."""
-        return self.unit != "kg"
-
-
 def lever(entry: Any) -> float:
     """The lever of a coordinate: a number; of an angle a length."""
     if isinstance(entry, str):
         return Length(parse_quantity(entry, "m"))
     if not is_number(entry):
-        raise EntryError(
-            got=quote_value(entry), expected='a number such as 1, or for an angle a length such as "1.2 m"'
-        )
+        raise invalid_entry(entry, expected='a number such as 1, or for an angle a length such as "1.2 m"')
     return float(entry)
 
 
@@ -85,16 +71,16 @@ def inertia(entry: Any) -> Amount:
         unit, value = parse_one_of(entry, {"kg": "", "kg m^2": ""}, "kg")
     except UnitError:
         wanted = 'a mass such as "250 kg", or of an angle a moment of inertia such as "200 kg m^2"'
-        raise EntryError(got=quote_value(entry), expected=wanted) from None
+        raise invalid_entry(entry, expected=wanted) from None
     if value < 0.0:
-        raise EntryError(got=quote_value(entry), fault="negative", expected=f"more than 0 {unit}, or 0 for a node")
+        raise invalid_entry(entry, fault="negative", expected=f"more than 0 {unit}, or 0 for a node")
     return Amount(unit, value)
 
 
 def _bound(entry: Any) -> Amount:
     found = inertia(entry)
     if found.value == 0.0:
-        raise EntryError(got=quote_value(entry), fault="not positive", expected=f"more than 0 {found.unit}")
+        raise invalid_entry(entry, fault="not positive", expected=f"more than 0 {found.unit}")
     return found
 
 
@@ -102,7 +88,7 @@ def part_name(name: Any) -> str:
     """A name that can stand before the name of a motion or a force."""
     if not NAME.fullmatch(name):
         letters = "a letter followed by letters, digits and underscores, such as body"
-        raise EntryError(got=quote_value(name), fault="not a name", expected=letters)
+        raise invalid_entry(name, fault="not a name", expected=letters)
     return str(name)
 
 
@@ -118,13 +104,13 @@ class InertiaCodec(Codec):
 
     free: bool = False
 
-    def load(self, raw: Any, context: LoadContext) -> Inertia:
+    def load(self, raw: Any, context: LoadContext) -> Amount:
         """The inertia; a free one has the name of its key."""
         if self.free and isinstance(raw, dict):
-            return Inertia(*range_of(raw, _bound, "kg", context))
-        return Inertia(*inertia(raw))
+            return range_of(raw, _bound, "kg", context)
+        return inertia(raw)
 
-    def dump(self, value: Inertia) -> Any:
+    def dump(self, value: Amount) -> Any:
         """The text in its unit, or a table of two."""
         return text_of(value.value, value.unit)
 
@@ -133,14 +119,14 @@ class InertiaCodec(Codec):
         one = quantity_schema("kg", "kg m^2", least="not negative")
         return or_range_schema(one) if self.free else one
 
-    def numbers(self, value: Inertia, words: str) -> Iterator[tuple[KeyPath, Number]]:
+    def numbers(self, value: Amount, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """The mass or the moment of inertia with its bounds; none of a node without mass."""
         if value.value != 0.0:
             yield from with_bounds(
-                Number(value.unit, "inertia" if value.angle else "mass", value.value, may_be_free=self.free)
+                Number(value.unit, "inertia" if is_angle(value) else "mass", value.value, may_be_free=self.free)
             )
 
-    def put(self, value: Inertia, keys: Sequence[str], number: float) -> Inertia:
+    def put(self, value: Amount, keys: Sequence[str], number: float) -> Amount:
         """The inertia with another number, or the free one with another bound."""
         if isinstance(value.value, Free) and keys:
             return value._replace(value=other_bound(value.value, keys[0], number))
@@ -370,15 +356,15 @@ def forces_of(vehicle: Mapping[str, Any]) -> dict[str, str]:
     forces, coordinates = (vehicle.get(part) for part in ("forces", "coordinates"))
     if not isinstance(forces, dict) or not isinstance(coordinates, dict):
         return {}
-    angles = {name for name, entry in coordinates.items() if _is_angle(entry)}
+    angles = {name for name, entry in coordinates.items() if is_angle(entry)}
     ports = {name: port for name, port in forces.items() if isinstance(port, dict)}
     return {name: "N m" if port and port.keys() <= angles else "N" for name, port in ports.items()}
 
 
-def _is_angle(entry: Any) -> bool:
-    if isinstance(entry, Inertia):
-        return entry.angle
+def is_angle(entry: Any) -> bool:
+    """Whether an entry of a coordinate, or the amount that it became, is a moment of inertia."""
     try:
-        return inertia(entry[LOWER] if isinstance(entry, dict) else entry).unit != "kg"
+        found = entry if isinstance(entry, Amount) else inertia(entry[LOWER] if isinstance(entry, dict) else entry)
+        return found.unit != "kg"
     except (ValueError, KeyError):  # told with the coordinate
         return False

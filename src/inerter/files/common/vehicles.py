@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 from inerter.errors import InerterError, MechanismError
 from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.common.vehicle_tables import MECHANISM, SEAT, SEAT_MASS, Length, forces_of
+from inerter.files.common.vehicle_tables import MECHANISM, SEAT, SEAT_MASS, Length, forces_of, is_angle
 from inerter.formatting import format_number, format_quantity, format_range
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
@@ -58,23 +58,29 @@ def parts_of(vehicle: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
 
 def mounts(model: str, values: Values) -> dict[str, MountEntry]:
     """Mounts that layouts fill, by name; a seat last."""
+    if model == MECHANISM:
+        parts = {**values["struts"], **values["tyres"]}
+        own = {name: MountEntry(part["network"] is None, part["network"]) for name, part in parts.items()}
+    else:
+        needed = needed_mounts_of(VEHICLES[model])
+        own = {name: MountEntry(needed=name in needed) for name in mounts_of(VEHICLES[model])}
     seat = {SEAT: MountEntry(needed=False, network=values[SEAT]["network"])} if SEAT in values else {}
-    return {**_form(model).mounts(values), **seat}
+    return {**own, **seat}
 
 
 def build_vehicle(model: str, values: Values, networks: Networks) -> Vehicle:
     """The vehicle with these networks in its mounts."""
-    if SEAT not in values:
-        return _form(model).build(values, networks)
-    seat = values[SEAT]
-    vehicle = build_vehicle(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
-    place = {} if seat["place"] is None else {"place": _floats(seat["place"])}
-    return Seat(vehicle, seat["mass"], networks[SEAT], **place)
+    if SEAT in values:
+        seat = values[SEAT]
+        vehicle = build_vehicle(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
+        place = {} if seat["place"] is None else {"place": _floats(seat["place"])}
+        return Seat(vehicle, seat["mass"], networks[SEAT], **place)
+    return _mechanism(values, networks) if model == MECHANISM else VEHICLES[model](**values, **networks)
 
 
 def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | None, str]]:
     """Name, value and unit of each quantity of a vehicle, or name, None and a text, for reports."""
-    yield from _form(model).words(_without_seat(values))
+    yield from _mechanism_words(values) if model == MECHANISM else _words_of(VEHICLES[model], values)
     if SEAT in values:
         yield from ((SEAT_MASS, value, unit) for _, value, unit in _words_of(Seat, values[SEAT]))
         yield "seat mounted at", None, _place(values[SEAT]["place"] or {"sprung": 1.0})
@@ -97,11 +103,11 @@ def _in_words(name: str, value: float | Free, unit: str) -> tuple[str, float | N
 
 def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
     """Problems of a vehicle that do not depend on its networks."""
-    own = _form(model).mounts(values)
+    own = mounts(model, _without_seat(values))
     if SEAT in values and SEAT in own:
         yield at(("vehicle", "struts", SEAT), fault="there is a seat in [vehicle.seat] too", expected="another name")
         return
-    problems = list(_form(model).problems(_without_seat(values)))
+    problems = list(_mechanism_problems(values)) if model == MECHANISM else []
     yield from problems
     if SEAT in values and not problems:
         place = values[SEAT]["place"] or {"sprung": 1.0}
@@ -112,7 +118,9 @@ def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
 
 def inputs(model: str, values: Values) -> dict[str, str]:
     """Inputs that a signal may excite, with the unit of each; the default input first."""
-    return _form(model).inputs(values)
+    if model == MECHANISM:
+        return {**({"road": "m"} if values["roads"] else {}), **forces_of(values)}
+    return {VEHICLES[model].moved: "m", **VEHICLES[model].forces}
 
 
 def tracks(model: str, values: Values) -> dict[str, str] | None:
@@ -127,115 +135,67 @@ def tracks(model: str, values: Values) -> dict[str, str] | None:
     return {road.name: road.side for road in roads}
 
 
-class _Form(Protocol):
-    def mounts(self, values: Values) -> dict[str, MountEntry]: ...
-
-    def build(self, values: Values, networks: Networks) -> Vehicle: ...
-
-    def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]: ...
-
-    def problems(self, values: Values) -> Iterator[Problem]: ...
-
-    def inputs(self, values: Values) -> dict[str, str]: ...
-
-
-def _form(model: str) -> _Form:
-    return _OwnMechanism() if model == MECHANISM else _Model(model)
-
-
 def _without_seat(values: Values) -> dict[str, Any]:
     return {key: value for key, value in values.items() if key != SEAT}
 
 
-@dataclass(frozen=True)
-class _Model:
-    """A vehicle that is a row of the table of vehicles."""
-
-    model: str
-
-    def mounts(self, values: Values) -> dict[str, MountEntry]:
-        kind = VEHICLES[self.model]
-        return {name: MountEntry(needed=name in needed_mounts_of(kind)) for name in mounts_of(kind)}
-
-    def build(self, values: Values, networks: Networks) -> Vehicle:
-        arguments: dict[str, Any] = {**values, **networks}
-        return VEHICLES[self.model](**arguments)
-
-    def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
-        yield from _words_of(VEHICLES[self.model], values)
-
-    def problems(self, values: Values) -> Iterator[Problem]:
-        yield from ()
-
-    def inputs(self, values: Values) -> dict[str, str]:
-        kind = VEHICLES[self.model]
-        return {kind.moved: "m", **kind.forces}
+def _mechanism(values: Values, networks: Networks) -> Mechanism:
+    """Mechanism of the tables of its parts."""
+    given = values["measures"]
+    loads = {f"{name}_load": 1.0 for name in values["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
+    ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in values["struts"].items()}
+    return Mechanism(
+        tuple(Coordinate(name, one.value, is_angle(one)) for name, one in values["coordinates"].items()),
+        tuple(Strut(name, networks[name], upper, lower) for name, (upper, lower) in ends.items()),
+        tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
+        tuple(RoadInput(name, road["distance"], road["track"]) for name, road in values["roads"].items()),
+        tuple(Force(name, _floats(port)) for name, port in values["forces"].items()),
+        PerformanceOutputs(
+            tuple(OutputWeight(output, float(weight)) for output, weight in given["comfort"].items()),
+            tuple(OutputWeight(output, float(weight)) for output, weight in loads.items()),
+            given["load_input"],
+            given["load_output"],
+        ),
+    )
 
 
-class _OwnMechanism:
-    """A mechanism, given by the tables of its parts."""
+def _mechanism_words(values: Values) -> Iterator[tuple[str, float | None, str]]:
+    for name, (unit, value) in values["coordinates"].items():
+        yield _in_words(name.replace("_", " "), value, unit)
+    for name, strut in values["struts"].items():
+        yield f"strut {name}", None, f"{_place(strut['upper'])} over {_place(strut['lower'])}"
+    for name, tyre in values["tyres"].items():
+        yield f"tyre {name}", None, f"{_place(tyre['port'])} over {tyre['road']}"
+    for name, road in values["roads"].items():
+        side = f", on the {road['track']}" if road["track"] else ""
+        yield f"road {name}", None, f"{format_quantity(road['distance'], 'm')} behind the first{side}"
+    for name, port in values["forces"].items():
+        yield f"force {name}", None, f"on {_place(port)}"
 
-    def mounts(self, values: Values) -> dict[str, MountEntry]:
-        parts = {**values["struts"], **values["tyres"]}
-        return {name: MountEntry(part["network"] is None, part["network"]) for name, part in parts.items()}
 
-    def build(self, values: Values, networks: Networks) -> Vehicle:
-        given = values["measures"]
-        loads = {f"{name}_load": 1.0 for name in values["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
-        ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in values["struts"].items()}
-        return Mechanism(
-            tuple(Coordinate(name, one.value, one.angle) for name, one in values["coordinates"].items()),
-            tuple(Strut(name, networks[name], upper, lower) for name, (upper, lower) in ends.items()),
-            tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
-            tuple(RoadInput(name, road["distance"], road["track"]) for name, road in values["roads"].items()),
-            tuple(Force(name, _floats(port)) for name, port in values["forces"].items()),
-            PerformanceOutputs(
-                tuple(OutputWeight(output, float(weight)) for output, weight in given["comfort"].items()),
-                tuple(OutputWeight(output, float(weight)) for output, weight in loads.items()),
-                given["load_input"],
-                given["load_output"],
-            ),
-        )
-
-    def words(self, values: Values) -> Iterator[tuple[str, float | None, str]]:
-        for name, (unit, value) in values["coordinates"].items():
-            yield _in_words(name.replace("_", " "), value, unit)
-        for name, strut in values["struts"].items():
-            yield f"strut {name}", None, f"{_place(strut['upper'])} over {_place(strut['lower'])}"
-        for name, tyre in values["tyres"].items():
-            yield f"tyre {name}", None, f"{_place(tyre['port'])} over {tyre['road']}"
-        for name, road in values["roads"].items():
-            side = f", on the {road['track']}" if road["track"] else ""
-            yield f"road {name}", None, f"{format_quantity(road['distance'], 'm')} behind the first{side}"
-        for name, port in values["forces"].items():
-            yield f"force {name}", None, f"on {_place(port)}"
-
-    def problems(self, values: Values) -> Iterator[Problem]:
-        known = {name: inertia.angle for name, inertia in values["coordinates"].items()}
-        roads = tuple(values["roads"])
-        found: list[Problem] = []
-        for name, strut in values["struts"].items():
-            for end in ("upper", "lower"):
-                found += _port_problems(("vehicle", "struts", name, end), strut[end], known, roads)
-        for name, tyre in values["tyres"].items():
-            found += _port_problems(("vehicle", "tyres", name, "port"), tyre["port"], known, ())
-            if tyre["road"] not in roads:
-                hint = nearest(tyre["road"], roads)
-                wanted = f"a road, one of {some(roads) or 'none'}"
-                found.append(
-                    at(("vehicle", "tyres", name, "road"), got=quote_value(tyre["road"]), expected=wanted, hint=hint)
-                )
-        for name, port in values["forces"].items():
-            found += _port_problems(("vehicle", "forces", name), port, known, ())
-        if not found:
-            try:
-                self.build(values, dict.fromkeys(self.mounts(values), _ANY))
-            except MechanismError as error:
-                found.append(at(("vehicle",), str(error)))
-        yield from found
-
-    def inputs(self, values: Values) -> dict[str, str]:
-        return {**({"road": "m"} if values["roads"] else {}), **forces_of(values)}
+def _mechanism_problems(values: Values) -> Iterator[Problem]:
+    known = {name: is_angle(inertia) for name, inertia in values["coordinates"].items()}
+    roads = tuple(values["roads"])
+    found: list[Problem] = []
+    for name, strut in values["struts"].items():
+        for end in ("upper", "lower"):
+            found += _port_problems(("vehicle", "struts", name, end), strut[end], known, roads)
+    for name, tyre in values["tyres"].items():
+        found += _port_problems(("vehicle", "tyres", name, "port"), tyre["port"], known, ())
+        if tyre["road"] not in roads:
+            hint = nearest(tyre["road"], roads)
+            wanted = f"a road, one of {some(roads) or 'none'}"
+            found.append(
+                at(("vehicle", "tyres", name, "road"), got=quote_value(tyre["road"]), expected=wanted, hint=hint)
+            )
+    for name, port in values["forces"].items():
+        found += _port_problems(("vehicle", "forces", name), port, known, ())
+    if not found:
+        try:
+            _mechanism(values, dict.fromkeys(mounts(MECHANISM, _without_seat(values)), _ANY))
+        except MechanismError as error:
+            found.append(at(("vehicle",), str(error)))
+    yield from found
 
 
 def _port_problems(

@@ -27,7 +27,7 @@ from inerter.files.common.entries import (
     whole,
     word,
 )
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
 from inerter.identification.models import MODELS
@@ -46,14 +46,14 @@ _MOST_STARTS = 4096
 def channel(value: Any) -> str | int:
     """A channel by its name or its number."""
     if isinstance(value, bool) or not isinstance(value, str | int) or value == "":
-        raise EntryError(got=quote_value(value), expected='the name of a channel, such as "Load", or its number from 0')
+        raise invalid_entry(value, expected='the name of a channel, such as "Load", or its number from 0')
     return value
 
 
 def channel_units(value: Any) -> dict[str, str]:
     """Units by what a channel is, not by its name."""
     if not isinstance(value, dict):
-        raise EntryError(got=quote_value(value), expected='a table such as { force = "kgf" }')
+        raise invalid_entry(value, expected='a table such as { force = "kgf" }')
     for role, unit in value.items():
         if role not in CHANNELS:
             known = ", ".join(CHANNELS)
@@ -74,7 +74,7 @@ def gap_treatment(value: Any) -> str | float:
         seconds = -1.0
     if seconds <= 0.0:
         known = ", ".join(map(quote_value, GAPS))
-        raise EntryError(got=quote_value(value), expected=f'one of {known}, or the longest to fill, such as "50 ms"')
+        raise invalid_entry(value, expected=f'one of {known}, or the longest to fill, such as "50 ms"')
     return seconds
 
 
@@ -86,7 +86,7 @@ def longest_delay(value: Any) -> bool | float:
 def check_part(value: Any) -> float:
     """Share of each record that is held out for validation."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value <= 0.6:
-        raise EntryError(got=quote_value(value), expected="a number from 0 to 0.6 without quotes, such as 0.2")
+        raise invalid_entry(value, expected="a number from 0 to 0.6 without quotes, such as 0.2")
     return float(value)
 
 

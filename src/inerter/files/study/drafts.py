@@ -14,7 +14,7 @@ from inerter.files.common.codecs import with_name
 from inerter.files.common.elements import ElementCodec, with_tied_values
 from inerter.files.common.entries import LOWER, UPPER, ExpressionCodec, element_name
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import invalid_entry
 from inerter.files.study.loading import study_of
 from inerter.files.study.place import Place
 from inerter.files.study.sections import study_codec
@@ -138,7 +138,7 @@ def rename_elements(tables: Tables, renamed: Mapping[str, str]) -> dict[str, Any
     for new in renamed.values():
         element_name(new)
         if (new in known and new not in renamed) or list(renamed.values()).count(new) > 1:
-            raise EntryError(got=quote_value(new), fault="the name of another element", expected="an unused name")
+            raise invalid_entry(new, fault="the name of another element", expected="an unused name")
     found = dict(study_codec().rename(tables, renamed))
     if any(found.get(section) != tables.get(section) for section in _WITH_OUTPUTS):
         _check_outputs(tables, renamed)
@@ -156,8 +156,8 @@ def _check_outputs(tables: Tables, renamed: Mapping[str, str]) -> None:
     for output in sorted(used):
         other = rename_output(output, renamed)
         if other != output and own & {output, other}:
-            raise EntryError(
-                got=quote_value(other),
+            raise invalid_entry(
+                other,
                 fault=f"the name of an output of the vehicle, or that of {quote_value(output)}, which is one",
                 expected="a name of an element that no part of the vehicle has",
             )

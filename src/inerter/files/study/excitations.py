@@ -9,13 +9,13 @@ from typing import Any, ClassVar, NamedTuple
 from inerter.files.common.codec import Codec, KeyPath, LoadContext, TableCodec, key, keyed_dataclass, keys_in
 from inerter.files.common.entries import TEXT, Amount, QuantityCodec
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import quantity_schema
 from inerter.files.study.filters import FILTER, in_s
 from inerter.indices.excitation import Excitation, FilteredExcitation, GroundAcceleration, WhiteForce
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
-from inerter.units import parse_one_of, quote_value
+from inerter.units import parse_one_of
 
 _GROUND, _INTENSITY = "ground_acceleration", "intensity"
 _OF_GROUND = "(m/s^2)^2/Hz"
@@ -51,7 +51,7 @@ class AmountCodec(Codec):
         """The value with its SI unit."""
         unit, value = parse_one_of(raw, self.units, next(iter(self.units)), self.what)
         if value <= 0.0:
-            raise EntryError(got=quote_value(raw), fault="not positive", expected=f"more than 0 {unit}")
+            raise invalid_entry(raw, fault="not positive", expected=f"more than 0 {unit}")
         return Amount(unit, value)
 
     def dump(self, value: Amount) -> str:

@@ -16,7 +16,7 @@ from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, Sc
 from inerter.files.common.codecs import WeightsCodec
 from inerter.files.common.entries import OUTPUT_NAME, TEXT
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import invalid_entry
 from inerter.files.study.excitations import (
     EXCITATION,
     AmountCodec,
@@ -29,7 +29,7 @@ from inerter.files.study.filters import FILTER, in_s
 from inerter.formatting import format_number
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
-from inerter.units import PURE, quote_value
+from inerter.units import PURE
 from inerter.validation import is_number
 
 _OF_INPUTS = {"N": "force", "N m": "moment", "m": "road", "m/s": "velocity of a road"}
@@ -64,8 +64,8 @@ def form_of(setting: TypedField) -> Form:
 
 def _weight(value: Any) -> float:
     if not is_number(value) or value == 0.0:
-        raise EntryError(
-            got=quote_value(value),
+        raise invalid_entry(
+            value,
             expected="a weight other than 0, a number without quotes, such as 1.0 (of an angle, its lever in m)",
         )
     return float(value)

@@ -10,7 +10,7 @@ from inerter.files.common.codec import Codec, KeyPath, RawEntry, Scalar, key, ke
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError, Problem, at, collect_problem
+from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
 from inerter.formatting import format_quantity
@@ -167,12 +167,10 @@ def limits_of(
 def _value(text: str | float, unit: str) -> float:
     pure = isinstance(text, float) and are_compatible(unit, PURE)
     if not unit and not pure and not _is_ratio(text):
-        raise EntryError(
-            got=quote_value(text), fault="a ratio has no unit", expected="a number without quotes, such as 0.3"
-        )
+        raise invalid_entry(text, fault="a ratio has no unit", expected="a number without quotes, such as 0.3")
     value = float(text) if pure else parse_quantity(text, unit)  # type: ignore[arg-type]  # refused there
     if value <= 0.0:
-        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {unit}".strip())
+        raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}".strip())
     return value
 
 
@@ -187,12 +185,12 @@ def _unit(study: Study, of: str) -> str:
         mounts = list(next(iter(study.layouts.values())).struts)
         if of.partition(".")[2] not in mounts:
             which = ", ".join(f"{_STIFFNESS}.{mount}" for mount in mounts)
-            raise EntryError(got=quote_value(of), fault="no strut of this vehicle", expected=which)
+            raise invalid_entry(of, fault="no strut of this vehicle", expected=which)
         return "N/m"
     known = [*study.own_indices, *index_names()]
     if of not in known:
         expected = f"an index ({some(known)}), or {_STIFFNESS} of a strut"
-        raise EntryError(got=quote_value(of), fault="cannot be limited", expected=expected, hint=nearest(of, known))
+        raise invalid_entry(of, fault="cannot be limited", expected=expected, hint=nearest(of, known))
     return study.unit(of)
 
 

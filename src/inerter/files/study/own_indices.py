@@ -11,7 +11,7 @@ from inerter.field_metadata import fields_of
 from inerter.files.common.codec import TableCodec, without_none
 from inerter.files.common.codecs import NamesCodec, TaggedCodec
 from inerter.files.common.entries import declaration_of, layout_name, one_of
-from inerter.files.common.problem import EntryError, Problem, at
+from inerter.files.common.problem import Problem, at, invalid_entry
 from inerter.files.study.forms import Form, form_declaration, form_of
 from inerter.indices.names import index_names, index_words
 from inerter.indices.registry import INDICES, as_line, excitation_of, index_choices, index_forms, needed_settings
@@ -60,9 +60,7 @@ def indices_of(tables: Mapping[str, Any]) -> list[str]:
 
 def _own_name(name: Any) -> str:
     if name in index_names():
-        raise EntryError(
-            got=quote_value(name), fault="a name that an index has already", expected="another, such as comfort"
-        )
+        raise invalid_entry(name, fault="a name that an index has already", expected="another, such as comfort")
     return layout_name(name)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from inerter.files.common.problem import EntryError, Problem, collect_problem
+from inerter.files.common.problem import Problem, collect_problem, invalid_entry
 from inerter.files.common.suggest import some
 from inerter.files.study.conditions import what_of
 from inerter.files.study.place import element_at, place_of
@@ -12,7 +12,6 @@ from inerter.files.study.places import number_at
 from inerter.files.study.study import Study, scattering
 from inerter.files.study.sweeps import unknown_place
 from inerter.networks.elements import Tied
-from inerter.units import quote_value
 
 _PLACE = ("study", "tolerance")
 
@@ -36,6 +35,4 @@ def _check_is_part(study: Study, name: str) -> None:
     if name and not any(name in scattering(study, layout) for layout in study.layouts):
         tied = [other for other, e in study.elements.items() if isinstance(e.value, Tied) and name in e.value.names]
         hint = f"; {some(tied)} follows from it, and scatters by its own name" if tied else ""
-        raise EntryError(
-            got=quote_value(name), fault=f"no layout has it as a part{hint}", expected="a part of a layout"
-        )
+        raise invalid_entry(name, fault=f"no layout has it as a part{hint}", expected="a part of a layout")

@@ -42,7 +42,7 @@ from inerter.files.common.entries import (
     word,
 )
 from inerter.files.common.layouts import layouts_codec
-from inerter.files.common.problem import EntryError
+from inerter.files.common.problem import invalid_entry
 from inerter.files.common.roads import road_codec
 from inerter.files.common.schema import words_schema
 from inerter.files.common.vehicle_tables import vehicle_codec
@@ -195,7 +195,7 @@ def _scatter(given: Any) -> float:
         except ValueError:
             number = None
     if isinstance(number, bool) or not isinstance(number, int | float) or not 0.0 < number < 1.0:
-        raise EntryError(got=quote_value(given), expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
+        raise invalid_entry(given, expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
     return float(number)
 
 

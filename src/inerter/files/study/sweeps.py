@@ -10,7 +10,7 @@ import numpy as np
 
 from inerter.files.common.entries import MOST_POINTS, quantity_text
 from inerter.files.common.number import Number
-from inerter.files.common.problem import EntryError, Problem, at, collect_problem
+from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.conditions import StudyCondition, following, what_of
 from inerter.files.study.limits import limit_words
@@ -68,9 +68,7 @@ def number_of(study: Study, place: Place) -> Number:
 def unknown_place(study: Study, place: Place) -> EntryError:
     """Error for a place without a number, with the nearest known place as a hint."""
     if element_at(place) in study.free_networks:
-        return EntryError(
-            got=quote_value(place.label), fault="a free network has no value", expected="an element or another number"
-        )
+        return invalid_entry(place.label, fault="a free network has no value", expected="an element or another number")
     if element_at(place) == place.key:
         missing = f"{quote_value(place.key)} is not in [elements]; available: {some(study.elements)}"
         return EntryError(fault=missing, hint=nearest(place.key, places(study)))
@@ -108,7 +106,7 @@ def value_of(number: Number, text: str) -> float:
     """Value [SI] of a text for the number at a place; raises `UnitError`, or `EntryError` if it is not possible."""
     value = parse_quantity(text, number.unit)
     if (value < 0.0 and not number.signed) or (value == 0.0 and not number.may_vanish):
-        raise EntryError(got=quote_value(text), fault="not positive", expected=f"more than 0 {number.unit}")
+        raise invalid_entry(text, fault="not positive", expected=f"more than 0 {number.unit}")
     return value
 
 

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from functools import cache
 from typing import Any, TypeVar
 
+from inerter.formatting import in_words
+
 _QUANTITY, _MOUNT, _CHOICE, _FORMED = "inerter quantity", "inerter mount", "inerter choice", "inerter formed"
 
 
@@ -36,7 +38,7 @@ class Field:
     @property
     def in_words(self) -> str:
         """Name for use in sentences."""
-        return self.words or self.name.replace("_", " ")
+        return self.words or in_words(self.name)
 
 
 @dataclasses.dataclass(frozen=True)

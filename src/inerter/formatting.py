@@ -127,30 +127,37 @@ def format_quantity(
     *,
     error: float = math.nan,
     bound: float = math.nan,
-    zeros: bool = False,
 ) -> str:
     """Value [`unit`] as text: at most `digits` significant digits and a suitable prefix; "n/a" for nan, "inf".
 
     With a standard error, which then has two digits, the value has as many decimals; fewer where its largest other
     error, the relative `bound`, allows no more. Without one, `parse_quantity` reads the text back to its digits.
-    `zeros` at the end are kept where the value has more digits, as in a table.
 
     >>> format_quantity(7544.2, "N s/m"), format_quantity(7544.2, "N s/m", error=23.0), format_quantity(2e-3, "s")
     ('7.544 kN s/m', '7.544 +- 0.023 kN s/m', '2 ms')
     >>> format_quantity(7544.2, "N s/m", bound=1e-3), format_quantity(float("nan"), "N")
     ('7.54 kN s/m', 'n/a')
-    >>> format_quantity(549.03, "N"), format_quantity(549.03, "N", zeros=True), format_quantity(549.0, "N", zeros=True)
-    ('549 N', '549.0 N', '549 N')
     """
     if not math.isfinite(value):
         return format_number(value)
     if shows_error(value, error, bound):
         own = _scale(value, unit)
         return _with_unit(format_uncertain(value * own.factor, error * own.factor, bound), own.unit)
-    own, shown = _scale(value, unit, digits), significant_digits(value, bound, digits)
-    if zeros and _has_more_digits(value * own.factor, shown):
-        return _with_unit(_with_zeros(value * own.factor, shown), own.unit)
-    return _in_scale(value, own, shown)
+    return _in_scale(value, _scale(value, unit, digits), significant_digits(value, bound, digits))
+
+
+def format_quantity_in_table(value: float, unit: str, *, error: float = math.nan, bound: float = math.nan) -> str:
+    """Quantity as `format_quantity` gives it, but with zeros at the end where the value has more digits.
+
+    >>> format_quantity(549.03, "N"), format_quantity_in_table(549.03, "N"), format_quantity_in_table(549.0, "N")
+    ('549 N', '549.0 N', '549 N')
+    """
+    if math.isfinite(value) and not shows_error(value, error, bound):
+        own, shown = _scale(value, unit), significant_digits(value, bound)
+        text = f"{value * own.factor:.{shown}g}"
+        if "e" not in text and abs(float(text) - value * own.factor) > _ALIKE * abs(value * own.factor):
+            return _with_unit(_with_zeros(value * own.factor, shown), own.unit)
+    return format_quantity(value, unit, error=error, bound=bound)
 
 
 def format_alike(values: Iterable[float], unit: str, digits: int = _DIGITS) -> list[str]:
@@ -379,6 +386,11 @@ def format_count(number: int, several: str) -> str:
     return f"{number} {several.removesuffix('s') if number == 1 else several}"
 
 
+def in_words(name: str) -> str:
+    """Name of an output, an input or an element with spaces in place of underscores."""
+    return name.replace("_", " ")
+
+
 def capital(text: str) -> str:
     """The text as the beginning of a sentence."""
     return text[:1].upper() + text[1:]
@@ -399,12 +411,6 @@ def _in_scale(value: float, own: Scale, digits: int) -> str:
         if math.isfinite(value)
         else format_number(value)
     )
-
-
-def _has_more_digits(value: float, digits: int) -> bool:
-    """Whether a number has more than so many digits, of which rounding leaves zeros at the end in a plain text."""
-    text = f"{value:.{digits}g}"
-    return "e" not in text and abs(float(text) - value) > _ALIKE * abs(value)
 
 
 def _with_zeros(value: float, digits: int) -> str:

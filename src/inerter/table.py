@@ -9,7 +9,14 @@ from dataclasses import dataclass, field
 from math import isfinite, isnan, nan
 from typing import Any
 
-from inerter.formatting import Scale, format_entry, format_number, format_quantity, format_uncertain, shows_error
+from inerter.formatting import (
+    Scale,
+    format_entry,
+    format_number,
+    format_quantity_in_table,
+    format_uncertain,
+    shows_error,
+)
 
 MISSING = "–"
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")  # beginnings of what a spreadsheet takes for a formula
@@ -30,7 +37,7 @@ class Quantity:
 
     def __str__(self) -> str:
         if self.scale is None:
-            return format_quantity(self.value, self.unit, error=self.error, bound=self.bound, zeros=True)
+            return format_quantity_in_table(self.value, self.unit, error=self.error, bound=self.bound)
         value, error = self.value * self.scale.factor, self.error * self.scale.factor
         if shows_error(value, error, self.bound):
             return format_uncertain(value, error, self.bound)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from inerter import Damper, Friction, Gap, Inerter, Spring, free
 from inerter.errors import NetworkError
-from inerter.figures.networks import draw_network, draw_networks, element_label, network_figure, schematic
+from inerter.figures.networks import draw_networks, draw_schematic, element_label, network_figure, schematic
 from inerter.figures.style import style_context
 from inerter.figures.symbols import HALF_HEIGHT, HALF_WIDTH, LEADING, TO_LABEL, blank_figure, symbol
 from inerter.networks.catalogue import LAYOUTS
@@ -212,7 +212,7 @@ def test_a_label_stands_at_its_element(values):
     placed = written("k | c - (ks | cs) - (b | f)")
     figure, axes = blank_figure(400.0, 300.0)
     figure.set_dpi(300.0)  # letters are moved and widened to whole pixels
-    assert draw_network(placed, axes, (150.0, 280.0), values=values) is axes
+    assert draw_schematic(schematic(placed, values=values), axes, (150.0, 280.0)) is axes
     figure.draw_without_rendering()
     texts = iter(axes.texts)
     for one in schematic(placed, values=values).placed:

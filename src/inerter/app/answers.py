@@ -22,6 +22,7 @@ from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.responses import IndexResponse, index_responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
+from inerter.formatting import in_words
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Inerter, Spring
@@ -105,7 +106,7 @@ def _output_titles(one: IndexResponse) -> list[str]:
     if len(one.outputs) == 1:
         return [one.words]
     _, per, source = one.words.partition(" per ")
-    names = [label.replace("_", " ") for label in one.outputs]
+    names = [in_words(label) for label in one.outputs]
     return [f"{name} per {source}" if per else f"{name}: {one.words}" for name in names]
 
 

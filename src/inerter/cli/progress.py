@@ -28,7 +28,7 @@ from inerter.files.study.cases import Outcome
 from inerter.files.study.parts import PartResult
 from inerter.files.study.running import Progress as Report
 from inerter.files.study.tasks import tasks
-from inerter.formatting import format_number
+from inerter.formatting import format_count, format_number
 from inerter.kernels.prepare import ProgressCallback
 from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
@@ -212,8 +212,7 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
 
 def _hands(executor: Executor | None) -> str:
     """Clause on the number of threads of a cluster, which may change; empty without one."""
-    count = 0 if executor is None else slots(executor)
-    return "" if executor is None else f", {count} thread{'' if count == 1 else 's'} at work"
+    return "" if executor is None else f", {format_count(slots(executor), 'threads')} at work"
 
 
 def _kind_of(last: PartResult) -> Kind:

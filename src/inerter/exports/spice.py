@@ -6,7 +6,7 @@ Each strut is a subcircuit between the nodes `upper` and `lower`, whose admittan
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import count
 
 from inerter.errors import ExportError
@@ -102,15 +102,6 @@ class _Netlist:
         letter, number = _LETTERS[element.linear], element.coefficient
         value = number if letter == "C" else 1.0 / number
         return f"{self._names.add(f'{letter}{element.label}')} {upper} {lower} {exact(value)}"
-
-
-def admittance_netlist(text: str, name: str, frequencies: Mapping[str, float]) -> str:
-    """A deck that drives the subcircuit `name` of a netlist by a force of 1 N: the voltage of `upper` is 1/Y.
-
-    `frequencies` are `points`, `first` and `last` [Hz], at logarithmic distances.
-    """
-    sweep = f".ac dec {int(frequencies['points'])} {frequencies['first']!r} {frequencies['last']!r}"
-    return "\n".join([text, f"xs upper 0 {name}", "iforce 0 upper dc 0 ac 1", ".options noopac", sweep, ".end", ""])
 
 
 SPICE = ExportKind("spice", "netlists of the struts, force as current", (".cir", ".sp"), _make, takes=("part",))

@@ -105,18 +105,10 @@ def network_figure(networks: Mapping[str, Network], *, values: bool = False) -> 
         x = _MARGIN + (max(widths) - row_width) / 2.0
         for cell in row:
             write(axes, cell.title, x + cell.left, y - cell.title_height / 2.0)
-            _draw(cell.drawing, axes, (x + cell.left, y - cell.title_height - _TITLE - 2.0 * _TERMINAL))
+            draw_schematic(cell.drawing, axes, (x + cell.left, y - cell.title_height - _TITLE - 2.0 * _TERMINAL))
             x += cell.left + cell.right + _COLUMN
         y -= height + _ROW
     return figure
-
-
-def draw_network(network: Network, axes: Axes, at: Point = (0.0, 0.0), *, values: bool = False) -> Axes:
-    """Draw a network with its upper end `at` a point of axes whose unit is the point, such as of `blank_figure`.
-
-    Raises `NetworkError` if `network` is none.
-    """
-    return _draw(schematic(network, values=values), axes, at)
 
 
 def schematic(network: Network, *, values: bool = False) -> Schematic:
@@ -243,7 +235,8 @@ def _row_width(row: Sequence[_Cell]) -> float:
     return sum(cell.left + cell.right for cell in row) + (len(row) - 1) * _COLUMN
 
 
-def _draw(drawing: Schematic, axes: Axes, at: Point) -> Axes:
+def draw_schematic(drawing: Schematic, axes: Axes, at: Point) -> Axes:
+    """Draw with the upper end `at` a point of axes whose unit is the point, such as of `blank_figure`."""
     placed, lines = drawing.translate(*at)
     x, y = at
     strokes = [*lines, circle(x, y + _TERMINAL, _TERMINAL), circle(x, y - drawing.height - _TERMINAL, _TERMINAL)]

@@ -18,7 +18,7 @@ from inerter.figures.labels import axis_label
 from inerter.figures.networks import draw_networks
 from inerter.figures.style import add_legend, colour, file_stems, marker, new_figure, save, style_context
 from inerter.files.study.searching import LayoutFront, LayoutSearch, StudySearch, searched_mounts
-from inerter.formatting import capital, choose_scale, typeset_quantity
+from inerter.formatting import capital, choose_scale, format_count, in_words, typeset_quantity
 from inerter.indices.names import title_with_name
 from inerter.network_search.front_results import FrontNetwork
 from inerter.networks.elements import Network
@@ -114,7 +114,7 @@ def _series(one: LayoutFront) -> Iterator[tuple[str, Sequence[FrontNetwork]]]:
     before: tuple[FrontNetwork, ...] = ()
     for count, front in one.result.by_elements.items():
         if front != before:
-            yield f"up to {count} element{'' if count == 1 else 's'}", front
+            yield f"up to {format_count(count, 'elements')}", front
         before = front
 
 
@@ -159,8 +159,7 @@ def _best_networks(found: StudySearch, one: LayoutSearch) -> Iterator[tuple[str,
     """Struts of the best network for each number of elements, by their titles."""
     mounts = searched_mounts(found.study, one.layout)
     for network in one.result.frontier:
-        count = f"{network.n_elements} element{'' if network.n_elements == 1 else 's'}"
-        title = f"{count}: {typeset_quantity(network.value, network.unit)}"
+        title = f"{format_count(network.n_elements, 'elements')}: {typeset_quantity(network.value, network.unit)}"
         struts = [strut for strut in network.design.mechanism().struts if strut.name in mounts]
         for strut in struts:
-            yield (title if len(struts) == 1 else f"{title}\n{strut.name.replace('_', ' ')}"), strut.network
+            yield (title if len(struts) == 1 else f"{title}\n{in_words(strut.name)}"), strut.network

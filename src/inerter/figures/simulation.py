@@ -18,7 +18,7 @@ from inerter.figures.curves import thin_curve
 from inerter.figures.labels import axis_label
 from inerter.figures.style import WIDE, add_legend, colour, new_figure, save, style_context
 from inerter.files.simulation.running import Nonlinear, SimulationResult
-from inerter.formatting import capital, choose_scale, format_number, format_range
+from inerter.formatting import capital, choose_scale, format_number, format_range, in_words
 from inerter.networks.elements.roles import GuardRole
 from inerter.systems.outputs import force_of
 
@@ -79,7 +79,7 @@ def panels(result: SimulationResult) -> list[TimePanel]:
             for i, (name, w) in enumerate(weights.items(), len(struts))
         )
         found.append(TimePanel("body acceleration", "m/s^2", body if len(body) > 1 else (Curve(body[0].output),)))
-    found += [TimePanel(name.replace("_", " "), outputs[name].unit, (Curve(name),)) for name in result.displacements]
+    found += [TimePanel(in_words(name), outputs[name].unit, (Curve(name),)) for name in result.displacements]
     if result.tyre_loads:
         found.append(TimePanel(_TYRES, "N", _curves(result.tyre_loads)))
     for strut in struts:
@@ -190,14 +190,14 @@ def _shared_words(names: Sequence[str]) -> list[str]:
 
 def _common(names: Sequence[str]) -> str:
     """Words common to the names of several outputs; else the first name."""
-    return " ".join(_shared_words(names)) or names[0].replace("_", " ")
+    return " ".join(_shared_words(names)) or in_words(names[0])
 
 
 def _own(names: Sequence[str]) -> list[str]:
     """Words that distinguish each of several outputs: "front" of `road_front`, or its whole name."""
     shared = _shared_words(names)
     own = [" ".join(word for word in name.split("_") if word not in shared) for name in names]
-    return own if all(own) and len({*own}) == len(own) else [name.replace("_", " ") for name in names]
+    return own if all(own) and len({*own}) == len(own) else [in_words(name) for name in names]
 
 
 def _style(curve: Curve) -> dict[str, Any]:
@@ -229,7 +229,7 @@ def _shade_lift_offs(result: SimulationResult, window: Window, ax: Axes) -> None
     for one in result.run.lift_offs:
         if one.begin < window[1] and one.end > window[0]:
             row, several = tyres.index(one.tyre), len(tyres) > 1
-            label = f"{one.tyre.replace('_', ' ')} would lift off{f' (row {row + 1})' if several else ''}"
+            label = f"{in_words(one.tyre)} would lift off{f' (row {row + 1})' if several else ''}"
             low, high = 1.0 - (row + 1) / len(tyres), 1.0 - row / len(tyres)
             ax.axvspan(one.begin, max(one.end, one.begin + 1e-9), low, high, label=label, zorder=0.5, **_LIFTED)
 

@@ -35,7 +35,7 @@ from inerter.figures.labels import (
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import add_legend, file_stems, new_figure, save, style_context
 from inerter.figures.sweeps import markers_shown, parameter_curves, sweep_curves
-from inerter.formatting import format_list, format_number
+from inerter.formatting import format_list, format_number, in_words
 
 _STILL = 1e-12  # of the largest gain of an index; less is rounding
 _MOST_MAPS = 3  # side by side
@@ -230,7 +230,7 @@ def _has_response(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
 def _still(results: xr.Dataset, index: str) -> str:
     """A sentence on the outputs that a figure leaves out."""
     names = results[f"output_{index}"].values[~_has_response(results, index)].tolist()
-    return f" Not excited, and not shown: {format_list([name.replace('_', ' ') for name in names])}." if names else ""
+    return f" Not excited, and not shown: {format_list([in_words(name) for name in names])}." if names else ""
 
 
 def _response(results: xr.Dataset, index: str) -> Figure:

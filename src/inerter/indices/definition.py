@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import PerformanceIndexError
-from inerter.formatting import format_list, format_quantity
+from inerter.formatting import format_list, format_quantity, in_words
 from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter, as_filter
@@ -108,12 +108,12 @@ class IndexDefinition:
         excited = self.drive.excited_mechanism(mechanism)
         outputs = [
             f"{_factor(one.weight, self.unit, unit_of(excited, [one.output]))}{'filtered ' * (passed is not None)}"
-            f"{_words(one.output)}"
+            f"{in_words(one.output)}"
             for one, passed in zip(self.outputs, self.filters, strict=True)
         ]
         listed = format_list(outputs)
         if self.is_peak:
-            inputs = format_list([*map(_words, inputs_of(self.input_paths(mechanism)))])
+            inputs = format_list([*map(in_words, inputs_of(self.input_paths(mechanism)))])
             return f"largest gain over frequency from {inputs} to {listed}"
         if len(outputs) == 1:
             return f"r.m.s. value of {listed}"
@@ -142,11 +142,6 @@ def _factor(weight: float, unit: str, of: str) -> str:
     if weight == 1.0:
         return ""
     return f"{format_quantity(weight, combine_units(unit or PURE, '/', of or PURE))} times "
-
-
-def _words(name: str) -> str:
-    """An output or input in words."""
-    return name.replace("_", " ")
 
 
 class DescribedIndex(Protocol):

@@ -19,7 +19,7 @@ from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
-from inerter.formatting import capital, format_list, format_number, format_quantity, format_share
+from inerter.formatting import capital, format_list, format_number, format_quantity, format_share, in_words
 from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES, amplitude_of, index_choices
 from inerter.methods.linear import CONVENTIONS
@@ -73,7 +73,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
         given = [field for field in fields_of(INDICES[symbol]) if field.key in settings and field != amplitude]
         rows += [(f"{capital(f.in_words)} of {name}", _value_text(study, settings[f.key], f.unit)) for f in given]
         texts = [one for one in index_choices(symbol) if one.key in settings]
-        rows += [(f"{capital(one.key.replace('_', ' '))} of {name}", settings[one.key]) for one in texts]
+        rows += [(f"{capital(in_words(one.key))} of {name}", settings[one.key]) for one in texts]
         rows += list(_formed_rows(study, name))
     for name, settings in study.method_settings.items():
         given = [field for field in method_settings(name) if field.key in settings]

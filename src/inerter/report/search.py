@@ -27,7 +27,7 @@ from inerter.files.study.search_tables import (
     real_networks_table,
 )
 from inerter.files.study.searching import TABLE, LayoutFront, LayoutSearch, StudySearch, tables_of
-from inerter.formatting import capital, format_list, format_percent, format_percent_size, format_quantity
+from inerter.formatting import capital, format_count, format_list, format_percent, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
@@ -75,7 +75,7 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
         near = ""
         if smaller.n_elements < best.n_elements:
             behind = format_percent_size(-improvement(smaller.value, best.value))
-            near = f"; with {_elements(smaller.n_elements)}, {smaller.layout} is only {behind} worse"
+            near = f"; with {format_count(smaller.n_elements, 'elements')}, {smaller.layout} is only {behind} worse"
         yield (
             f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
             f"{format_quantity(best.value, best.unit)}{against}{near}."
@@ -111,7 +111,7 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
         doubt = "" if best.ok else f" ({best.status_text.rstrip('.')})"
         yield (
             f"{capital(one.heading)} with real inerters ({brief_words_of(method)}): {best.network} is the best of "
-            f"{len(own)} network{'' if len(own) == 1 else 's'}, {format_quantity(best.value, one.result.unit)}{against}"
+            f"{format_count(len(own), 'networks')}, {format_quantity(best.value, one.result.unit)}{against}"
             f"{doubt}."
         )
 
@@ -128,10 +128,6 @@ def _front_remark(front: LayoutFront) -> str:
         f"{searched}; {result.n_bounded} {were} not, since even {whose} best values in each index, taken together, are "
         "no better than the front."
     )
-
-
-def _elements(count: int) -> str:
-    return f"{count} element{'' if count == 1 else 's'}"
 
 
 def search_notes(found: StudySearch) -> list[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.figures.simulation import Window
 from inerter.files.simulation.running import SimulationResult
-from inerter.formatting import format_decimals, format_number, format_quantity, format_range
+from inerter.formatting import format_decimals, format_number, format_quantity, format_range, in_words
 from inerter.report.json_data import json_data
 from inerter.report.text import WIDTH, table_lines
 from inerter.simulation.peaks import LiftOff, Peak
@@ -71,7 +71,7 @@ def _values(result: SimulationResult) -> Iterator[str]:
     rows = [
         Row(
             cells(
-                name.replace("_", " "),
+                in_words(name),
                 Quantity(result.rms(name), run.unit(name)),
                 _when(run.peak(name), run.unit(name)),
             )
@@ -80,7 +80,7 @@ def _values(result: SimulationResult) -> Iterator[str]:
     ]
     yield from table_lines(Table("Outputs", columns("Output", "r.m.s.", "Largest"), rows))
     rows = [
-        Row(cells(tyre.replace("_", " "), _when(least, "N"), Quantity(run.static_loads[tyre], "N")))
+        Row(cells(in_words(tyre), _when(least, "N"), Quantity(run.static_loads[tyre], "N")))
         for tyre, least in run.least_tyre_loads.items()
     ]
     if rows:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError, PerformanceIndexError
+from inerter.formatting import in_words
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import Branch, Carriers, Graph, Mount, full_graph
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, TrackedPoint, Tyre
@@ -114,15 +115,13 @@ def rename_output(output: str, elements: Mapping[str, str]) -> str:
 
 def _of_inputs(mechanism: Mechanism) -> list[Output]:
     roads, forces = np.eye(len(mechanism.roads)), np.eye(len(mechanism.forces))
-    found = [
-        Output(r.name, "m", _readable_name(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)
-    ]
+    found = [Output(r.name, "m", in_words(r.name), road=row) for r, row in zip(mechanism.roads, roads, strict=True)]
     angles = {c.name for c in mechanism.coordinates if c.angle}
     for given, row in zip(mechanism.forces, forces, strict=True):
         unit = "N m" if set(given.port) <= angles else "N"
         if mechanism.ground_moves and given.name == GROUND_ACCELERATION:
             unit = "m/s^2"
-        found.append(Output(given.name, unit, _readable_name(given.name), external=row))
+        found.append(Output(given.name, unit, in_words(given.name), external=row))
     return found
 
 
@@ -140,7 +139,7 @@ def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:
     found = []
     ground = np.array([float(force.name == GROUND_ACCELERATION) for force in mechanism.forces])
     for coordinate, row in _moving(mechanism, graph):
-        unit, said = "rad" if coordinate.angle else "m", _readable_name(coordinate.name)
+        unit, said = "rad" if coordinate.angle else "m", in_words(coordinate.name)
         carried = {"external": ground} if mechanism.ground_moves and not coordinate.angle else {}
         for what in _motions(mechanism, coordinate):
             moved: dict[str, Any] = {what: row, **carried}
@@ -164,7 +163,7 @@ def _over_ground(mechanism: Mechanism, graph: Graph) -> list[Output]:
     for coordinate, row in (one for one in _moving(mechanism, graph) if not one[0].angle):
         for what in _OVER_GROUND:
             moved: dict[str, Any] = {what: row}
-            title = f"{_readable_name(coordinate.name)} {what} over the ground"
+            title = f"{in_words(coordinate.name)} {what} over the ground"
             found.append(Output(f"{coordinate.name}_relative_{what}", f"m{_MOTIONS[what]}", title, **moved))
     return found
 
@@ -176,8 +175,8 @@ def _of_mounts(mechanism: Mechanism, graph: Graph) -> list[Output]:
         total = np.zeros(len(graph.branches))
         total[list(mount.carriers)] = list(mount.carriers.values())
         found += [
-            Output(force, "N", _readable_name(force), forces=total),
-            Output(travel, "m", _readable_name(travel), displacement=mount.nodes, road=mount.roads),
+            Output(force, "N", in_words(force), forces=total),
+            Output(travel, "m", in_words(travel), displacement=mount.nodes, road=mount.roads),
         ]
     return found
 
@@ -234,7 +233,7 @@ def _of_still(mechanism: Mechanism) -> list[Output]:
     found: list[Output] = []
     for strut in mechanism.still:
         force, travel = of_mount(strut)
-        found += [Output(force, "N", _readable_name(force)), Output(travel, "m", _readable_name(travel))]
+        found += [Output(force, "N", in_words(force)), Output(travel, "m", in_words(travel))]
         labels = [element.label for element in strut.network.elements()]
         for label in (*(f"{strut.name}.{label}" for label in labels), *labels):
             found += [
@@ -307,7 +306,3 @@ def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -
     more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
     hint = f"Did you mean {' or '.join(close)}?" if close else f"Available: {', '.join([*known][:_LISTED])}{more}."
     raise error(f"Unknown output {name!r}. {hint}")
-
-
-def _readable_name(name: str) -> str:
-    return name.replace("_", " ")

@@ -53,8 +53,3 @@ def _entries(ax: Axes) -> dict[str, Any]:
     """Handle of each label of the curves of axes, each label once."""
     handles, labels = ax.get_legend_handles_labels()
     return {label: handle for handle, label in zip(handles, labels, strict=True) if label}
-
-
-def words_of(name: str) -> str:
-    """Name of an input or output as words."""
-    return name.replace("_", " ")

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import DesignError, LinearSystemError
 from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import curve_looks, words_of
+from inerter.figures.plots.axes import curve_looks
 from inerter.files.study.responses import gain_unit, source_unit
-from inerter.formatting import capital
+from inerter.formatting import capital, in_words
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.norms.response import frequency_response, resonant_range
@@ -50,7 +50,7 @@ def response_curves(designs: Designs, response: Response, frequency: ArrayLike |
                 'one output, such as ("road_front_left", "roll_acceleration").'
             )
         for row, output in enumerate(system.outputs):
-            several = {"label": f"{look['label']} {words_of(output)}".strip()} if len(system.outputs) > 1 else {}
+            several = {"label": f"{look['label']} {in_words(output)}".strip()} if len(system.outputs) > 1 else {}
             yield ResponseCurve(hertz, values[:, row, 0], {**look, **several, **_fainter(row)}, what, unit)
 
 
@@ -72,7 +72,7 @@ def _system(mechanism: Mechanism, vehicle: Vehicle, response: Response) -> tuple
     source, output = response
     system = state_space(vehicle, source, output)
     moved = source in {road.name for road in mechanism.roads}
-    what = f"{capital(words_of(output))} over {words_of(source)}{' velocity' if moved else ''}"
+    what = f"{capital(in_words(output))} over {in_words(source)}{' velocity' if moved else ''}"
     per = "m/s" if moved else input_unit(mechanism, source)
     return system, None, what, gain_unit(unit_of(mechanism, [output]), per)
 

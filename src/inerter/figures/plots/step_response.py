@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from inerter.errors import LinearSystemError
 from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import add_curve_legend, curve_looks, single_axes, words_of
+from inerter.figures.plots.axes import add_curve_legend, curve_looks, single_axes
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import style_context
-from inerter.formatting import capital
+from inerter.formatting import capital, in_words
 from inerter.systems.assemble import state_space
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import input_unit, unit_of
@@ -46,7 +46,7 @@ def plot_step_response(
             roads = response[0] in {road.name for road in mechanism.roads}
             ax.plot(time, _impulse(system, time) if roads else _step(system, time), **look)
             what, per = unit_of(mechanism, [response[1]]), "m" if roads else input_unit(mechanism, response[0])
-            label = f"{capital(words_of(response[1]))} [{what} per {per} of {words_of(response[0])}]"
+            label = f"{capital(in_words(response[1]))} [{what} per {per} of {in_words(response[0])}]"
         ax.set(xlabel=axis_label("Time", "s"), ylabel=label)
         ax.margins(x=0.0)
         add_curve_legend(ax, len(named))

@@ -18,6 +18,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, invalid_entry
 from inerter.files.common.schema import INSTEAD, example_value
 from inerter.files.common.suggest import nearest
+from inerter.formatting import in_words
 
 INVALID: Any = object()  # stands for an entry that cannot be read
 REQUIRED: Any = object()  # the default of a key that must be given
@@ -189,8 +190,7 @@ def keys_in(kind: Any) -> tuple[Declaration, ...]:
     """The keys that a keyed dataclass states, in their order."""
     every = [(f, f.metadata[_DECLARATION]) for f in dataclasses.fields(kind) if _DECLARATION in f.metadata]
     return tuple(
-        replace(one, name=one.name or f.name, attribute=f.name, words=one.words or f.name.replace("_", " "))
-        for f, one in every
+        replace(one, name=one.name or f.name, attribute=f.name, words=one.words or in_words(f.name)) for f, one in every
     )
 
 

@@ -13,7 +13,7 @@ from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
-from inerter.formatting import format_alike, format_number, format_range
+from inerter.formatting import format_alike, format_number, format_range, in_words
 from inerter.networks.elements import NAME, Element, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import rename_in_expression
@@ -164,7 +164,7 @@ def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: boo
     example = f'{one.key} = "{one.example}"'
     if isinstance(one, TextChoice):
         free_text: Codec = ELEMENT_NAME if one.of_element else TEXT
-        codec: Codec = word(f"a {one.key.replace('_', ' ')}", one.options) if one.options else free_text
+        codec: Codec = word(f"a {in_words(one.key)}", one.options) if one.options else free_text
         return Declaration(codec, one.sentence, example, REQUIRED if one.needed else None, one.key, one.key)
     least = "not negative" if one.default == 0.0 and not optional else "positive"
     default = None if optional else REQUIRED if one.default is None else one.default

@@ -15,7 +15,7 @@ from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.vehicle_tables import MECHANISM, SEAT, SEAT_MASS, Length, forces_of, is_angle
-from inerter.formatting import format_number, format_quantity, format_range
+from inerter.formatting import format_number, format_quantity, format_range, in_words
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
 from inerter.vehicle.mechanism import (
@@ -161,7 +161,7 @@ def _mechanism(values: Values, networks: Networks) -> Mechanism:
 
 def _mechanism_words(values: Values) -> Iterator[tuple[str, float | None, str]]:
     for name, (unit, value) in values["coordinates"].items():
-        yield _in_words(name.replace("_", " "), value, unit)
+        yield _in_words(in_words(name), value, unit)
     for name, strut in values["struts"].items():
         yield f"strut {name}", None, f"{_place(strut['upper'])} over {_place(strut['lower'])}"
     for name, tyre in values["tyres"].items():

@@ -12,6 +12,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import quantity_schema
 from inerter.files.study.filters import FILTER, in_s
+from inerter.formatting import in_words
 from inerter.indices.excitation import Excitation, FilteredExcitation, GroundAcceleration, WhiteForce
 from inerter.signals.road import Road
 from inerter.systems.filters import Filter
@@ -70,11 +71,6 @@ class AmountCodec(Codec):
     def put(self, value: Amount, keys: Sequence[str], number: float) -> Amount:
         """Amount with another value in the same unit."""
         return value._replace(value=number)
-
-
-def in_words(name: str) -> str:
-    """Name of an output or an input with spaces instead of underscores."""
-    return name.replace("_", " ")
 
 
 @keyed_dataclass

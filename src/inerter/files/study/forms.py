@@ -23,10 +23,9 @@ from inerter.files.study.excitations import (
     NameReference,
     SizeReference,
     StatedExcitation,
-    in_words,
 )
 from inerter.files.study.filters import FILTER, in_s
-from inerter.formatting import format_number
+from inerter.formatting import format_number, in_words
 from inerter.indices.random_response import FixedWeights
 from inerter.signals.road import Road
 from inerter.units import PURE
@@ -51,7 +50,7 @@ class Form:
 def form_declaration(setting: TypedField) -> Declaration:
     """The key of a setting that has a form."""
     example, default = f"{setting.key} = {setting.example}", REQUIRED if setting.needed else None
-    words = setting.key.replace("_", " ")
+    words = in_words(setting.key)
     return Declaration(form_of(setting).codec, setting.sentence, example, default, setting.key, setting.key, words)
 
 

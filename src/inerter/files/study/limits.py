@@ -13,7 +13,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, in_words
 from inerter.indices.definition import quantity_words
 from inerter.indices.names import index_names, title_with_name
 from inerter.methods.composite_index import IndexLike
@@ -44,7 +44,7 @@ class StudyLimit:
     @property
     def words(self) -> str:
         """Quantity of the limit and its sense, as text."""
-        return f"{self.of} {self.sense.replace('_', ' ')}"
+        return f"{self.of} {in_words(self.sense)}"
 
     @property
     def place(self) -> str:
@@ -59,7 +59,7 @@ class StudyLimit:
     @property
     def side(self) -> str:
         """Sense and value, such as "at most 8 mm"."""
-        return f"{self.sense.replace('_', ' ')} {self.value_text}"
+        return f"{in_words(self.sense)} {self.value_text}"
 
     def entry(self) -> str | float:
         """Value of the limit for the study file: a number if dimensionless, else text with the unit."""
@@ -121,7 +121,7 @@ class LimitsCodec(ByPlaceCodec):
         """Values of all limits, in tables of tables where their names are written without quotes."""
         for name, inside in raw.items() if isinstance(raw, Mapping) else ():
             if name in _SENSES:
-                yield RawEntry(_LIMIT, inside, (name,), words=name.replace("_", " "))
+                yield RawEntry(_LIMIT, inside, (name,), words=in_words(name))
             else:
                 for entry in self.raw_entries(inside):
                     yield replace(
@@ -204,7 +204,7 @@ def limited_quantity_words(study: Study, of: str, part: str = "") -> str:
 
 def limit_words(study: Study, limit: StudyLimit) -> str:
     """Limited quantity and sense of the limit, in words."""
-    return f"{limited_quantity_words(study, limit.of, each_of(study, limit))} {limit.sense.replace('_', ' ')}"
+    return f"{limited_quantity_words(study, limit.of, each_of(study, limit))} {in_words(limit.sense)}"
 
 
 def limit_text(study: Study, limit: StudyLimit, value: str = "") -> str:
@@ -248,7 +248,7 @@ def part_words(vehicle: Vehicle, output: str) -> str:
         for part in parts:
             if output.startswith(f"{part.name}_"):
                 return f"{part.name.removeprefix(f'{kind}_').replace('_', ' ')} {kind}"
-    return output.replace("_", " ")
+    return in_words(output)
 
 
 def limit_results(

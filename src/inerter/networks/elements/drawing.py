@@ -10,19 +10,20 @@ SymbolLine = tuple[Point, ...]
 HALF_WIDTH, HALF_HEIGHT = 8.0, 20.0  # of a symbol with its leads
 
 
-def circle(x: float, y: float, radius: float, corners: int = 60) -> SymbolLine:
+def circle(x: float, y: float, radius: float) -> SymbolLine:
     """A circle as a line."""
-    angles = [2.0 * pi * i / corners for i in range(corners + 1)]
+    angles = [2.0 * pi * i / 60 for i in range(61)]
     return tuple((x + radius * cos(angle), y + radius * sin(angle)) for angle in angles)
 
 
-def zigzag(turns: int = 7, half_height: float = 12.0, half_width: float = 6.5) -> SymbolLine:
-    """A coil seen from the side, with its leads."""
-    pitch = 2.0 * half_height / turns
-    peaks = [(half_width * (-1) ** i, half_height - (i + 0.5) * pitch) for i in range(turns)]
-    return ((0.0, HALF_HEIGHT), (0.0, half_height), *peaks, (0.0, -half_height), (0.0, -HALF_HEIGHT))
-
-
+_PITCH = 24.0 / 7
+COIL: SymbolLine = (  # seen from the side, with its leads
+    (0.0, HALF_HEIGHT),
+    (0.0, 12.0),
+    *((6.5 * (-1) ** i, 12.0 - (i + 0.5) * _PITCH) for i in range(7)),
+    (0.0, -12.0),
+    (0.0, -HALF_HEIGHT),
+)
 BOX: tuple[SymbolLine, ...] = (  # for elements without a symbol
     ((-8.0, 9.0), (-8.0, -9.0), (8.0, -9.0), (8.0, 9.0), (-8.0, 9.0)),
     ((0.0, 20.0), (0.0, 9.0)),

@@ -9,7 +9,7 @@ import numpy as np
 
 from inerter.errors import DesignError, NetworkError
 from inerter.field_metadata import Field
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, in_words
 from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, SymbolLine
 from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
@@ -58,7 +58,7 @@ class Element(Network):
             self._check_more()
             return
         number = value.lower if isinstance(value, Free) else value
-        what = f"{self.quantity.replace('_', ' ').capitalize()}" + (f" of {self.name!r}" if self.name else "")
+        what = f"{in_words(self.quantity).capitalize()}" + (f" of {self.name!r}" if self.name else "")
         if not is_number(number):
             raise NetworkError(f"{what} must be a finite number of {self.unit} or free(lower, upper), got {value!r}.")
         if self.more:
@@ -81,7 +81,7 @@ class Element(Network):
         for field in self.more:
             number = getattr(self, field.name)
             if not is_number(number) or number <= 0.0:
-                what = field.name.replace("_", " ").capitalize()
+                what = in_words(field.name).capitalize()
                 raise NetworkError(f"{what} must be a positive number of {field.unit}, got {number!r}.")
 
     @classmethod

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-from inerter.networks.elements.drawing import SymbolLine, zigzag
+from inerter.networks.elements.drawing import COIL, SymbolLine
 from inerter.networks.elements.element import Element
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.elements.values import Value
@@ -29,4 +29,4 @@ class Spring(Element):
     sentence: ClassVar[str] = "Force over elongation."
     example: ClassVar[str] = "120 kN/m"
     linear: ClassVar[LinearRole] = LinearRole.STIFFNESS
-    drawing: ClassVar[tuple[SymbolLine, ...]] = (zigzag(),)
+    drawing: ClassVar[tuple[SymbolLine, ...]] = (COIL,)

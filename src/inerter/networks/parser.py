@@ -157,10 +157,7 @@ class _Parser:
         return result
 
     def _parallel(self) -> ExpressionPart:
-        return self._several("|", self._series)
-
-    def _series(self) -> ExpressionPart:
-        return self._several("-", self._atom)
+        return self._several("|", lambda: self._several("-", self._atom))
 
     def _several(self, sign: str, one: Callable[[], ExpressionPart]) -> ExpressionPart:
         """One part, or all parts combined by `sign`."""

@@ -10,9 +10,9 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.networks.elements import Bridge, CombinedNetwork, Element, Network, Series
+from inerter.networks.elements import Bridge, CombinedNetwork, Network, Series
 from inerter.networks.elements.roles import GuardRole
-from inerter.networks.transform import UpsideDown, expand_elements
+from inerter.networks.transform import UpsideDown, expand_elements, to_simulation
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.coordinates import clean, null_space
 from inerter.systems.graph import full_graph
@@ -38,13 +38,9 @@ def elongations(run: Trajectory, mechanism: Mechanism) -> dict[str, dict[str, Ma
     for mount in mechanism.mounts():
         rows = found[mount.name] = {}
         for element in mount.network.elements():
-            nodes, roads = _row_of(expand_elements(element, _to_simulation), motion.next_row(branches))
+            nodes, roads = _row_of(expand_elements(element, to_simulation), motion.next_row(branches))
             rows[_unique_label(element.label, rows)] = motion.elongation(nodes, roads)
     return found
-
-
-def _to_simulation(element: Element) -> Network:
-    return element.as_piecewise()
 
 
 def _unique_label(label: str, used: Mapping[str, object]) -> str:

@@ -84,6 +84,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
 class BudgetAnswer(Answer):
     """Break-even value of an element [SI], with its uncertainty and all crossings; None for values not found."""
 
+    of = BudgetPart
     sure = tuple(kind.value for kind in StatusKind if kind.severity is Severity.INFO)
     index: str
     parameter: str
@@ -94,11 +95,6 @@ class BudgetAnswer(Answer):
     standard_error: float | None
     interval: tuple[float, float] | None  # 95 % confidence interval
     crossings: list[float]  # all values at which both are equally good
-
-    @property
-    def part(self) -> BudgetPart:
-        """Task part to which the answer belongs."""
-        return BudgetPart(self.layout, self.index, self.parameter)
 
 
 class Budgets(Task[BudgetAnswer]):

@@ -58,16 +58,12 @@ class FrontPart(TaskPart["FrontAnswer"]):
 class FrontAnswer(Answer):
     """Points of a Pareto front, in ascending order of the first index [SI]."""
 
+    of = FrontPart
     values: list[list[float]]  # of each point, by index
     parameters: list[dict[str, float]]
     statuses: list[str]
     jumps: list[int]  # points after which the front leaps
     knee: int | None
-
-    @property
-    def part(self) -> FrontPart:
-        """Task part to which the answer belongs."""
-        return FrontPart(self.layout)
 
 
 class Fronts(Task[FrontAnswer]):

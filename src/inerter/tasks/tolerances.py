@@ -80,16 +80,12 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
 class ToleranceAnswer(Answer):
     """Distribution of an index [SI], and first- and total-order Sobol' indices of the values."""
 
+    of = TolerancePart
     index: str
     method: str
     unit: str
     numbers: dict[str, float]  # nominal, mean, standard_deviation, quantile, worst
     effects: dict[str, list[float]]  # by what scatters: its part of the variance by itself, and in all
-
-    @property
-    def part(self) -> TolerancePart:
-        """Task part to which the answer belongs."""
-        return TolerancePart(self.layout, self.index)
 
     def quantity(self, name: str) -> Quantity | None:
         """A number of the distribution with its unit; None if it is not known."""

@@ -348,6 +348,7 @@ class Scalar(Codec):
     parse: Callable[[Any], Any]
     describe: Callable[[], dict[str, Any]]  # its JSON Schema, made when it is asked for: rows may be added until then
     write: Callable[[Any], Any] = lambda value: value
+    renamed: Callable[[Any, Mapping[str, str]], Any] = lambda raw, names: raw  # with other names of elements
 
     def load(self, raw: Any, context: LoadContext) -> Any:
         """Value of the entry, as `parse` returns it."""
@@ -360,6 +361,10 @@ class Scalar(Codec):
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the entry."""
         return self.describe()
+
+    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
+        """The entry with other names of elements, as `renamed` returns it."""
+        return self.renamed(raw, names)
 
 
 def load_tables(codec: Codec, tables: Mapping[str, Any]) -> tuple[Any, list[Problem]]:

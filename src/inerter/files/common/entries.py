@@ -233,24 +233,14 @@ def text(value: Any) -> str:
 TEXT = Scalar(text, lambda: TEXT_SCHEMA)
 
 
-class ElementNameCodec(Scalar):
-    """The name of an element."""
-
-    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
-        """The other name of the element."""
-        return names.get(raw, raw) if isinstance(raw, str) else raw
+def _renamed_element(raw: Any, names: Mapping[str, str]) -> Any:
+    return names.get(raw, raw) if isinstance(raw, str) else raw
 
 
-class OutputNameCodec(Scalar):
-    """The name of an output of the vehicle, which may be one of an element."""
-
-    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
-        """The name of the output with the other name of its element."""
-        return rename_output(raw, names) if isinstance(raw, str) else raw
-
-
-ELEMENT_NAME = ElementNameCodec(text, lambda: TEXT_SCHEMA)
-OUTPUT_NAME = OutputNameCodec(text, lambda: TEXT_SCHEMA)
+ELEMENT_NAME = Scalar(text, lambda: TEXT_SCHEMA, renamed=_renamed_element)
+OUTPUT_NAME = Scalar(  # which may be one of an element
+    text, lambda: TEXT_SCHEMA, renamed=lambda raw, names: rename_output(raw, names) if isinstance(raw, str) else raw
+)
 
 
 def one_of(what: str, known: Collection[str]) -> Callable[[Any], str]:
@@ -296,20 +286,13 @@ class SomeOfFile(Codec):
         return list_schema({"anyOf": [words_schema(self.known({})), TEXT_SCHEMA]})
 
 
-class NameListCodec(Scalar):
-    """A list of names of elements."""
-
-    def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
-        """The list with other names."""
-        if not isinstance(raw, list):
-            return raw
-        return [names.get(one, one) if isinstance(one, str) else one for one in raw]
-
-
 def some_names(example: str) -> Codec:
     """List of at least one element, without repetition; whether the elements exist is checked later."""
-    return NameListCodec(
-        lambda values: _check_list(values, text, lambda: example), lambda: list_schema(TEXT_SCHEMA), list_or_none
+    return Scalar(
+        lambda values: _check_list(values, text, lambda: example),
+        lambda: list_schema(TEXT_SCHEMA),
+        list_or_none,
+        lambda raw, names: [_renamed_element(one, names) for one in raw] if isinstance(raw, list) else raw,
     )
 
 

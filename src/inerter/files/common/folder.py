@@ -198,7 +198,11 @@ def _check_files(intent: WriteMode, known: Listing) -> None:
     there = [name for name in dict.fromkeys((*own, *intent.names)) if os.path.lexists(folder / name)]
     if intent.resume:  # its lines are looked at one by one
         there = [name for name in there if name not in own or not own[name].journal or is_linked(folder, name)]
-    strange = [name for name in there if not (_is_folder if name.endswith("/") else _is_ours)(folder, name, own)]
+    strange = [
+        name
+        for name in there
+        if not (_is_folder(folder, name) if name.endswith("/") else is_own(folder, name, Listing(own)))
+    ]
     if strange:
         raise StudyError(f"{folder}: {_kept_files_note(strange)} Move that away, or {_ELSEWHERE}.")
     read = [name for name in there if intent.force and _is_input(folder / name, intent.inputs)]
@@ -209,11 +213,7 @@ def _check_files(intent: WriteMode, known: Listing) -> None:
         )
 
 
-def _is_ours(folder: Path, name: str, own: Mapping[str, Entry]) -> bool:
-    return is_own(folder, name, Listing(own))
-
-
-def _is_folder(folder: Path, name: str, own: Mapping[str, Entry]) -> bool:
+def _is_folder(folder: Path, name: str) -> bool:
     return (folder / name).is_dir() and not is_linked(folder, name)
 
 
@@ -254,7 +254,7 @@ def _is_mark(folder: Path) -> bool:
     mark = folder / MARK
     if not os.path.lexists(mark):
         return True
-    return _is_folder(folder, MARK, {}) and (listing(folder) is not None or not _strange(mark))
+    return _is_folder(folder, MARK) and (listing(folder) is not None or not _strange(mark))
 
 
 def _strange(mark: Path) -> list[str]:

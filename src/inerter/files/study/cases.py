@@ -104,6 +104,7 @@ class Cases:
 class Outcome(PartResult):
     """The design of a case and its values; all of it survives JSON."""
 
+    of = Case
     layout: str
     index: str
     point: int
@@ -126,11 +127,6 @@ class Outcome(PartResult):
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
     speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
     speed_message: str = ""  # what makes those doubtful
-
-    @property
-    def part(self) -> Case:
-        """Case to which the outcome belongs."""
-        return Case(self.layout, self.index, self.point)
 
     def feasible_values(self, method: str) -> dict[str, float]:
         """The indices of this design by a method; empty where no design satisfies the limits."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
@@ -28,25 +28,27 @@ ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on i
 class PartResult(ABC):
     """The result of a part; a frozen dataclass whose fields survive JSON."""
 
+    of: ClassVar[type[StudyPart[Any]]]  # whose labels are fields here too
     sure: ClassVar[tuple[str, ...]] = (StatusKind.OK.value,)  # kinds of status that answer the question
 
     layout: str
     message: str
 
     @property
-    @abstractmethod
-    def part(self) -> StudyPart[Self]:
+    def part(self) -> Any:
         """Part to which the result belongs."""
+        labels: Any = self.of
+        return labels(*(getattr(self, field.name) for field in fields(labels) if field.compare))
 
     @property
-    @abstractmethod
     def kind(self) -> str:
-        """Kind of status."""
+        """Kind of status: `failed` if the part as a whole has no result, with `message` as the reason."""
+        return (StatusKind.FAILED if self.message else StatusKind.OK).value
 
     @property
     def name(self) -> str:
         """Name of the part in messages."""
-        return self.part.name
+        return str(self.part.name)
 
     @property
     def ok(self) -> bool:

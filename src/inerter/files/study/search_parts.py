@@ -57,21 +57,12 @@ class NetworkGroup(StudyPart["GroupResult"]):
 class GroupResult(PartResult):
     """The best values of some networks, or the reason why there are none; all of it survives JSON."""
 
+    of = NetworkGroup
     layout: str
     index: str
     number: int
     networks: list[dict[str, Any]]  # the fields of each `SearchedNetwork`
     message: str = ""
-
-    @property
-    def part(self) -> NetworkGroup:
-        """Group to which the result belongs."""
-        return NetworkGroup(self.layout, self.index, self.number)
-
-    @property
-    def kind(self) -> str:
-        """Kind of status: `failed` if the group as a whole has no result."""
-        return (StatusKind.FAILED if self.message else StatusKind.OK).value
 
     def optima(self) -> Iterator[SearchedNetwork]:
         """The networks with what was found for each."""
@@ -123,21 +114,12 @@ class NetworkFrontPart(StudyPart["NetworkFrontResult"]):
 class NetworkFrontResult(PartResult):
     """Points of a network; all of it survives JSON."""
 
+    of = NetworkFrontPart
     layout: str
     wave: int
     network: str
     points: dict[str, Any]  # the fields of `NetworkPoints`
     message: str = ""
-
-    @property
-    def part(self) -> NetworkFrontPart:
-        """Part to which the result belongs."""
-        return NetworkFrontPart(self.layout, self.wave, self.network)
-
-    @property
-    def kind(self) -> str:
-        """Kind of status: `failed` if the network has no points."""
-        return (StatusKind.FAILED if self.message else StatusKind.OK).value
 
     def network_points(self) -> NetworkPoints:
         """The points."""
@@ -211,6 +193,7 @@ class RealPart(StudyPart["RealResult"]):
 class RealResult(PartResult):
     """The best values of a network with real inerters [SI]; all of it survives JSON."""
 
+    of = RealPart
     layout: str
     index: str
     method: str
@@ -224,11 +207,6 @@ class RealResult(PartResult):
     active_bounds: dict[str, str] = field(default_factory=dict)
     starts: int = 0
     agreed: int = 0
-
-    @property
-    def part(self) -> RealPart:
-        """Part to which the result belongs."""
-        return RealPart(self.layout, self.index, self.method, self.network)
 
     @property
     def kind(self) -> str:

@@ -76,16 +76,12 @@ class CataloguePart(tasks.TaskPart["CatalogueAnswer"]):
 class CatalogueAnswer(tasks.Answer):
     """Best value of the catalogue, and the index with it."""
 
+    of = CataloguePart
     index: str
     element: str
     best: str
     value: float
     unit: str
-
-    @property
-    def part(self) -> CataloguePart:
-        """Part to which the answer belongs."""
-        return CataloguePart(self.layout, self.index)
 
 
 class Catalogues(tasks.Task[CatalogueAnswer]):

@@ -38,6 +38,29 @@ roughness = "5e-7 m^3/cycle"
 """
 
 
+RIG_FIT = """
+[record]
+force_bandwidth = "300 Hz"
+[model]
+layout = "(ks | cs) - (b | f)"
+[elements]
+ks = "1000 kN/m"
+cs = "3200 N s/m"
+b = { from = "1 kg", to = "500 kg" }
+f = { from = "0 N", to = "100 N" }
+[fit]
+starts = 8
+"""  # an identification file
+
+
+def with_changes(text: str, *changes: tuple[str, str]) -> str:
+    """The text with parts of it replaced, each once; each must be there."""
+    for old, new in changes:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text
+
+
 def load_text(folder: Path, text: str, name: str = "study.toml") -> Study:
     """The study of a file with this text in `folder`."""
     (folder / name).write_text(text, encoding="utf-8")

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from study_text import PAPER_CAR, RIG_FIT, study_text
 from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
@@ -21,41 +22,9 @@ from inerter.identification.statements.identifiability import Identifiability, V
 from inerter.records.uncertain import Uncertain
 
 SCREW = it.Spring(1e6) | it.Damper(3200.0)
-CONFIG = """
-[record]
-force_bandwidth = "300 Hz"
-
-[model]
-layout = "(ks | cs) - (b | f)"
-
-[elements]
-ks = "1000 kN/m"
-cs = "3200 N s/m"
-b = { from = "1 kg", to = "500 kg" }
-f = { from = "0 N", to = "100 N" }
-
-[fit]
-starts = 8
-"""
 FILES = {"fit.json", "residuals.csv", "response.json", "report.html", "figures"}
-STUDY = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-
-{elements}
-
-[study]
-indices = ["J1"]
-evaluate = ["expected-value"]
-realisations = 2
-"""
+SETTINGS = 'indices = ["J1"]\nevaluate = ["expected-value"]\nrealisations = 2'
+STUDY = study_text(SETTINGS, vehicle=PAPER_CAR, elements="PASTED", layouts="")
 
 
 @pytest.fixture(scope="session")
@@ -82,7 +51,7 @@ def fitted(bench: it.Record, fits: list[it.Fit], tmp_path_factory: pytest.TempPa
         return fits[-1]
 
     it.write_record(bench, folder / "bench.csv")
-    (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
+    (folder / "rig.toml").write_text(RIG_FIT, encoding="utf-8")
     arguments = [str(folder / "bench.csv"), "--config", str(folder / "rig.toml"), "-o", str(folder / "out"), "--json"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(identification_run, "identify", kept)
@@ -141,7 +110,7 @@ def test_the_elements_can_be_pasted_into_a_study(fitted: Path, capsys: pytest.Ca
     assert tables["elements"]["ks"] == "1 MN/m"
     pasted = block.replace("[elements]", '[elements]\nk = "120 kN/m"\nc = "3 kN s/m"')
     pasted = pasted.replace('"(ks | cs)', '"k | c | (ks | cs)')
-    (fitted / "study.toml").write_text(STUDY.format(elements=pasted), encoding="utf-8")
+    (fitted / "study.toml").write_text(STUDY.replace("[elements]\nPASTED\n[layouts]\n", pasted), encoding="utf-8")
     assert call(["check", str(fitted / "study.toml")]) == 0
     assert "ok" in capsys.readouterr().out
 
@@ -181,7 +150,7 @@ def test_a_fit_that_is_not_ok_is_written_and_returns_1(
 def rattled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Records of an independent rig: a displacement that is 4 ms late, and 6 kg between load cell and device."""
     folder = tmp_path_factory.mktemp("rattled")
-    (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
+    (folder / "rig.toml").write_text(RIG_FIT, encoding="utf-8")
     device = Device(b=113.0, f=10.0, ks=1e6, cs=3200.0)
     motion = Tones((2e-3, 4e-4), (1.5, 4.0), (0.0, 1.0))
     for name, sensors in {"late": Sensors(displacement_late=4e-3), "heavy": Sensors(fixture=6.0)}.items():

@@ -444,8 +444,8 @@ BAD = {
     "method's name": ("methods.quadrature", "methods.norm", "methods.norm", ["unknown key", "one of quadrature"]),
     "method unused": ('"quadrature", ', "", "methods.quadrature", ["middle of", "neither in optimise nor in evaluate"]),
     "search": ('optimise = "norm"', 'optimise = "quadrature"', "study.optimise", ["not an optimisation method"]),
-    "element": ('pitch = "12 mm", ', "", "elements.J", ["no pitch of the ball screw"]),
-    "kind": ('"ball screw"', '"ball scrw"', "elements.J", ['"gap", "ball screw"']),
+    "element": ('pitch = "12 mm", ', "", "elements.J.pitch", ['missing; expected pitch = "1 m"']),
+    "kind": ('"ball screw"', '"ball scrw"', "elements.J.kind", ['"gap", "ball screw"']),
     "mounts": ('S1 = "k | c"', 'S1 = { front = "k", rear = "k" }', "layouts.S1", ["a seated car has one strut"]),
 }
 

@@ -13,6 +13,7 @@ from campaigns import sampled
 from folders import EXAMPLES
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from study_text import RIG_FIT
 from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
@@ -33,19 +34,6 @@ from inerter.records.writers import write_record
 from inerter.report import identified_values
 
 TOKEN = "told."  # what was once looked for in sentences, and what begins a status, are the worst of tokens
-CONFIG = """
-[record]
-force_bandwidth = "300 Hz"
-[model]
-layout = "(ks | cs) - (b | f)"
-[elements]
-ks = "1000 kN/m"
-cs = "3200 N s/m"
-b = { from = "1 kg", to = "500 kg" }
-f = { from = "0 N", to = "100 N" }
-[fit]
-starts = 8
-"""
 WORDS = {
     "sentence", "status", "message", "notes", "next_experiment", "remedy", "choice", "versions", "title", "model",
     "elements",
@@ -102,7 +90,7 @@ def bench(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFacto
     if request.param.startswith("saturated"):
         force = np.clip(force, -70.0, 70.0)
     write_record(it.Record(time, displacement, force), folder / "bench.csv")
-    (folder / "rig.toml").write_text(CONFIG, encoding="utf-8")
+    (folder / "rig.toml").write_text(RIG_FIT, encoding="utf-8")
     return folder
 
 

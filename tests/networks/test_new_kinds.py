@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from study_text import PAPER_CAR, study_text
 from wang_su import ROAD
 from wang_su import paper_quarter_car as car
 
@@ -355,27 +356,12 @@ def test_an_expression_holds_them():
     assert [(type(e), e.label) for e in parsed.elements()] == [(it.Spring, "k"), (Flywheel, "J"), (TwoSlopes, "d")]
 
 
-STUDY = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "120 kN/m"
-c = "3 kN s/m"
-d = {D}
-J = {J}
-[layouts]
-S1 = "k | d"
-S2 = "k | c - J"
-[study]
-indices = ["J1"]
-evaluate = ["norm", "expected-value"]
-"""
+STUDY = study_text(
+    'indices = ["J1"]\nevaluate = ["norm", "expected-value"]',
+    vehicle=PAPER_CAR,
+    elements='k = "120 kN/m"\nc = "3 kN s/m"\nd = {D}\nJ = {J}',
+    layouts='S1 = "k | d"\nS2 = "k | c - J"',
+)
 DAMPER = '{ kind = "digressive damper", damping = "3 kN s/m", beyond = "800 N s/m", knee = "50 mm/s" }'
 SCREW = '{ kind = "flywheel on a screw", moment = "8 kg cm^2", lead = "10 mm" }'
 RANGE = SCREW.replace('"8 kg cm^2"', '{ from = "1 kg cm^2", to = "90 kg cm^2" }')

@@ -22,13 +22,17 @@ SWEPT = {  # the sweep, what is to be read, what is not, and the values in SI un
 }
 
 
+def text_of_run(text, folder, capsys):
+    """What the command prints of a study with this text, which it runs into `out`, in one line."""
+    (folder / "study.toml").write_text(text, encoding="utf-8")
+    assert call(["run", str(folder / "study.toml"), "-o", str(folder / "out"), "-j", "1"]) == 0
+    return " ".join(capsys.readouterr().out.split())
+
+
 @pytest.mark.parametrize("name", sampled(SWEPT, ["km/h"], kept=2))
 def test_swept_values_are_told_as_the_file_wrote_them(tmp_path, capsys, name):
     sweep, told, other, values = SWEPT[name]
-    path = tmp_path / "study.toml"
-    path.write_text(study_text(f'indices = ["J1"]\n[study.sweep]\n{sweep}'), encoding="utf-8")
-    assert call(["run", str(path), "-o", str(tmp_path / "out"), "-j", "1"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
+    text = text_of_run(study_text(f'indices = ["J1"]\n[study.sweep]\n{sweep}'), tmp_path, capsys)
     assert any(one in text for one in told)
     assert other not in text
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
@@ -49,11 +53,8 @@ def test_units_that_differ_within_a_sweep_are_told_in_si(tmp_path):
 @pytest.mark.usefixtures("undrawn")
 def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
     """The layout with the lower quantile of tolerances.csv, and the best one without scatter if that is another."""
-    path = tmp_path / "study.toml"
     settings = 'indices = ["J1"]\ntolerance = { k = "20 %", c = "15 %", b = "90 %" }'
-    path.write_text(study_text(settings, layouts='S1 = "k | c"\nS2 = "k | c | b"'), encoding="utf-8")
-    assert call(["run", str(path), "-o", str(tmp_path / "out"), "-j", "1"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
+    text = text_of_run(study_text(settings, layouts='S1 = "k | c"\nS2 = "k | c | b"'), tmp_path, capsys)
     with open(tmp_path / "out" / "tolerances.csv", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     best = min(rows, key=lambda row: float(row["quantile_0.95"]))
@@ -70,10 +71,7 @@ def test_the_answer_of_a_study_with_tolerances_is_about_them(tmp_path, capsys):
 @pytest.mark.usefixtures("undrawn")
 def test_a_distribution_that_is_one_value_is_due_to_nothing(tmp_path, capsys):
     """The travel of a spring beside a damper does not depend on the spring."""
-    path = tmp_path / "study.toml"
     settings = 'indices = ["suspension-travel"]\ntolerance = { k = "20 %" }'
-    path.write_text(study_text(settings, layouts='S1 = "k | c"'), encoding="utf-8")
-    assert call(["run", str(path), "-o", str(tmp_path / "out"), "-j", "1"]) == 0
-    text = " ".join(capsys.readouterr().out.split())
+    text = text_of_run(study_text(settings, layouts='S1 = "k | c"'), tmp_path, capsys)
     assert "With tolerances S1 is best" in text
     assert "due to" not in text.partition("With tolerances")[2]

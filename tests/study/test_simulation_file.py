@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from folders import EXAMPLES, ROOT
+from study_text import with_changes
 from wang_su import ROAD, paper_quarter_car
 
 from inerter.errors import StudyError
@@ -112,15 +113,12 @@ duration = "0.2 s"
 def load(tmp_path):
     """Loads a file from text, with parts of the text replaced first; each part must be there."""
 
-    def load_text(text, *changes):
-        for old, new in changes:
-            assert old in text
-            text = text.replace(old, new, 1)
+    def load_changed(text, *changes):
         path = tmp_path / "motion.toml"
-        path.write_text(text, encoding="utf-8")
+        path.write_text(with_changes(text, *changes), encoding="utf-8")
         return load_simulation(path)
 
-    return load_text
+    return load_changed
 
 
 # --- what a good file means ---

@@ -17,7 +17,7 @@ import pytest
 from folders import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
-from study_text import assert_survives
+from study_text import assert_survives, with_changes
 from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 from inerter.errors import NetworkError, StudyError
@@ -92,15 +92,12 @@ optimise = "norm"
 def load(tmp_path):
     """Loads a study from text, with parts of the text replaced first; each part must be there."""
 
-    def load_text(text, *changes):
-        for old, new in changes:
-            assert old in text
-            text = text.replace(old, new, 1)
+    def load_changed(text, *changes):
         path = tmp_path / "study.toml"
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        path.write_bytes(text if isinstance(text, bytes) else with_changes(text, *changes).encode())
         return load_study(path)
 
-    return load_text
+    return load_changed
 
 
 # --- what a good file means ---

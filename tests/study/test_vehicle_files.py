@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from folders import ROOT
-from study_text import assert_survives, load_text
+from study_text import assert_survives, load_text, with_changes
 from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
@@ -31,10 +31,7 @@ def load(tmp_path: Path) -> Load:
 
     def load_example(name: str, *changes: tuple[str, str]) -> Study:
         text = (ROOT / "examples" / f"{name}.toml").read_text(encoding="utf-8")
-        for old, new in changes:
-            assert old in text, old
-            text = text.replace(old, new, 1)
-        return load_text(tmp_path, text)
+        return load_text(tmp_path, with_changes(text, *changes))
 
     return load_example
 

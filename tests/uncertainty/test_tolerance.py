@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy.optimize
 from campaigns import sampled
+from slopes import assert_slopes
 from wang_su import J1, J3, J5, paper_quarter_car
 
 import inerter as it
@@ -150,10 +151,7 @@ def test_gradients_of_a_quantile(index):
     objective, point = objective_of(free(), of, NORM), np.array([6e3, 300.0])
     value, gradient = objective.value_and_gradient(point)
     assert value == pytest.approx(it.evaluate(free().with_values({"c": 6e3, "b": 300.0}), of, NORM).value, rel=1e-9)
-    for i in range(2):
-        step = np.where(np.arange(2) == i, 1e-6, 0.0)
-        up, down = objective.values(np.array([point * (1.0 + step), point * (1.0 - step)]))
-        assert gradient[i] * point[i] / value == pytest.approx((up - down) / 2e-6 / value, abs=1e-5)
+    assert_slopes(objective, point, gradient, abs=1e-5 * value)
 
 
 @pytest.mark.campaign
@@ -217,10 +215,7 @@ def test_what_is_tied_follows_in_the_design_and_scatters_by_itself(spread):
         assert quantile == pytest.approx(np.quantile(values, 0.95), abs=near)
     objective = objective_of(made_up(), it.Quantile(J3, of.scatter, samples=32), NORM)  # whose samples keep their ranks
     value, gradient = objective.value_and_gradient(point)
-    for i in range(2):
-        step = np.where(np.arange(2) == i, 1e-6, 0.0)
-        up, down = objective.values(np.array([point * (1.0 + step), point * (1.0 - step)]))
-        assert gradient[i] * point[i] / value == pytest.approx((up - down) / 2e-6 / value, abs=1e-5)
+    assert_slopes(objective, point, gradient, abs=1e-5 * value)
 
 
 def test_two_parts_of_one_free_value_scatter_by_their_names():

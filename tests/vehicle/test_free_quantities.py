@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from campaigns import sampled
 from numpy.typing import NDArray
+from slopes import assert_slopes, value_and_gradient
 from wang_su import ROAD
 
 import inerter as it
@@ -67,19 +68,8 @@ def test_an_index_of_free_quantities_is_that_of_designs_with_these_numbers(car: 
 def test_gradients_over_quantities_are_the_differences_of_values(car: str, name: str) -> None:
     objective = NORM.objective(FREE[car], INDICES[name])
     point = np.array([sqrt(f.lower * f.upper) * 1.1 for f in FREE[car].free_values().values()])
-    gradient = _gradient(objective, point)
-    steps = np.diag(1e-4 * point)
-    ends = objective.values(np.vstack([point + steps, point - steps])).reshape(2, -1)
-    differences = (ends[0] - ends[1]) / (2e-4 * point)
-    np.testing.assert_allclose(gradient * point, differences * point, rtol=1e-5, atol=1e-6 * ends.max())
-
-
-def _gradient(objective: object, point: Array) -> Array:
-    which = objective.active(point)  # type: ignore[attr-defined]
-    if which is None:
-        return objective.value_and_gradient(point)[1]  # type: ignore[attr-defined]
-    values, gradients = objective.components(point, which)  # type: ignore[attr-defined]
-    return np.asarray(gradients[np.argmax(values)])
+    value, gradient = value_and_gradient(objective, point)
+    assert_slopes(objective, point, gradient, step=1e-4, rel=1e-5, abs=1e-6 * value)
 
 
 def test_a_mass_on_moving_ground_against_its_closed_form() -> None:

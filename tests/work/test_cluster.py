@@ -17,6 +17,7 @@ import pytest
 from campaigns import sampled
 from clusters import PATIENCE, Cluster, cluster, kill, results
 from folders import EXAMPLES
+from study_text import PAPER_CAR, study_text
 from wang_su import J1, paper_quarter_car
 
 import inerter as it
@@ -28,31 +29,17 @@ from inerter.work.processes import Processes
 
 SOURCES = Path(it.__file__).parent
 KILL = "__import__('os').kill(__import__('os').getpid(), 9)"
-STUDY = """
-title = "With friction, on simulated roads"
-[vehicle]
-model = "quarter-car"
-sprung_mass = "181.75 kg"
-unsprung_mass = "25 kg"
-tyre_stiffness = "120 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "120 kN/m"
-c = "4 kN s/m"
-b = "366 kg"
-f = "30 N"
-[layouts]
-S1 = "k | c"
-S3 = "k | c - (b | f)"
-[study]
-indices = ["J1", "J3"]
+STUDY = study_text(
+    """indices = ["J1", "J3"]
 evaluate = ["expected-value", "norm"]
 realisations = ROADS
 baseline = "S1"
-sweep = { k = { from = "60 kN/m", to = "180 kN/m", points = POINTS } }
-"""
+sweep = { k = { from = "60 kN/m", to = "180 kN/m", points = POINTS } }""",
+    vehicle=PAPER_CAR,
+    elements='k = "120 kN/m"\nc = "4 kN s/m"\nb = "366 kg"\nf = "30 N"',
+    layouts='S1 = "k | c"\nS3 = "k | c - (b | f)"',
+    title='title = "With friction, on simulated roads"',
+)
 
 
 def inerter(*words: object, **environment: str) -> subprocess.Popen[str]:

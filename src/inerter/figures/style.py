@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 from inerter.atomic_io import atomic_write
 from inerter.formatting import format_number, typeset
 
-NARROW, WIDE = 3.4, 7.0  # one and two columns of a journal [inch]
+WIDE = 7.0  # two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
 _LOG_RATIO = 20.0  # values within this ratio are on a linear axis
 _LABELLED_RATIO = 300.0  # up to which ratio a log axis labels 2 and 5 too

@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 
 _UNSURE = StatusKind.INACCURATE.value
-_STATIC = "the static limit, which no damper or inerter lowers"
 _MOST_PLACES = 20  # at which a layout crosses the baseline, in a sentence
 
 

@@ -108,13 +108,12 @@ def times_within(times: Array, start: float, stop: float, interval: float | None
     return times[inside]
 
 
-def checked_grid(start: float, step: float, count: int) -> Array:
-    """The times of a uniform grid."""
+def check_grid(start: object, step: object, count: object) -> None:
+    """Raises `SignalError` unless a uniform grid starts at a time, with a positive step and a possible count."""
     finite_number("The start of a grid", start, "s")
     positive_number("The step of a grid", step, "s")
     if not is_whole(count, 0, MOST):
         raise SignalError(f"The count of a grid must be an integer from 0 to 1e8, got {count!r}.")
-    return np.asarray(start + step * np.arange(count), dtype=float)
 
 
 def check_span(start: object, stop: object) -> None:

@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import SignalError
 from inerter.formatting import format_number, format_quantity, format_range
 from inerter.signals.arguments import (
     Array,
-    checked_grid,
+    check_grid,
     finite_number,
     frequency_band,
     positive_number,
@@ -53,12 +54,12 @@ class Harmonics(Signal):
         return np.angle(self.coefficient)
 
     def grid(self, start: float, step: float, count: int) -> Pair:
-        times = checked_grid(start, step, count)
+        check_grid(start, step, count)
         length = round(min(self.period / step, 2.0 * _LONGEST))
         whole = abs(length * step - self.period) <= 1e-15 * self.period
-        if whole and length <= min(_LONGEST, len(times) * len(self.coefficient)):
-            return self._by_transform(start, length, len(times))
-        return self._by_blocks(start, step, len(times))
+        if whole and length <= min(_LONGEST, count * len(self.coefficient)):
+            return self._by_transform(start, length, count)
+        return self._by_blocks(start, step, count)
 
     def _evaluate(self, time: Array) -> Pair:
         flat = time.ravel()
@@ -71,18 +72,18 @@ class Harmonics(Signal):
     def _by_transform(self, start: float, length: int, count: int) -> Pair:
         """One Fourier transform for a grid of `length` points per period; higher harmonics are aliased exactly."""
         orders = len(self.coefficient)
-        rows = self._rows if start == 0.0 else self._rows * self._waves(np.array([start]))[:, 0]
+        turn = 1.0 if start == 0.0 else self._waves(np.array([start]))[:, 0]
         if orders <= length / 2:
-            half = np.zeros((2, orders + 1), complex)  # the transform pads higher harmonics with zeros
-            np.multiply(0.5, rows, out=half[:, 1:])
+            half = np.zeros((2, length // 2 + 1), complex)
+            np.multiply(self._rows, 0.5 * turn, out=half[:, 1 : orders + 1])
             if orders == length / 2:  # which has no mirror image
-                half[:, -1] = rows[:, -1].real
+                half[:, -1] = 2.0 * half[:, -1].real
         else:
-            padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
+            padded = np.pad(self._rows * turn, ((0, 0), (1, -(orders + 1) % length)))
             spectrum = padded.reshape(2, -1, length).sum(axis=1)
             mirrored = np.roll(spectrum[:, ::-1], 1, axis=1).conj()
             half = 0.5 * (spectrum + mirrored)[:, : length // 2 + 1]
-        value, slope = np.fft.irfft(half, length, norm="forward")
+        value, slope = scipy.fft.irfft(half, length, norm="forward")  # both side by side, in half of NumPy's time
         if count <= length:
             return value[:count], slope[:count]
         return np.resize(value, count), np.resize(slope, count)

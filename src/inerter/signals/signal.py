@@ -15,8 +15,8 @@ from inerter.formatting import format_alike, format_number, format_quantity, for
 from inerter.signals.arguments import (
     MOST,
     Array,
+    check_grid,
     check_span,
-    checked_grid,
     positive_number,
     real_array,
     real_vector,
@@ -81,7 +81,8 @@ class Signal:
 
         Raises `SignalError` as `sample` does, and unless `step` is positive and `count` a non-negative integer.
         """
-        return self.sample(checked_grid(start, step, count))
+        check_grid(start, step, count)
+        return self.sample(start + step * np.arange(count))
 
     def breaks(self, start: float, stop: float) -> Array:
         """Breakpoints in (start, stop) [s] between pieces of the signal; empty for a single formula.

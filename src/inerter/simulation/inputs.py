@@ -200,27 +200,17 @@ def tabulate(
         np.zeros(0) if s is None else _breaks(s, d, grid[0], grid[-1], step, joined)
         for s, d in zip(signals, delays, strict=True)
     ]
-    between = np.unique(np.concatenate([np.zeros(0), *broken]))
-    between = between[np.abs((between - start) / step - np.rint((between - start) / step)) > _SAME]
-    between = between[np.concatenate([[True], np.diff(between) > _SAME * step])[: between.size]]
-    slot = np.full(count + 1, -1)
-    slot[::every] = np.arange(slot[::every].size)
-    time: Matrix = grid
-    if between.size:
-        order = np.argsort(np.concatenate([grid, between]), kind="stable")
-        time = np.concatenate([grid, between])[order]
-        slot = np.concatenate([slot, np.full(between.size, -1)])[order]
+    time, slot, odd = _knots(grid, _between(np.concatenate([np.zeros(0), *broken]), start, step), step, every)
     shape = (time.size, len(signals))
     value, slope = np.zeros(shape), np.zeros(shape)
     jumped, before = np.zeros(time.size, dtype=bool), []
     for i, (signal, delay) in enumerate(zip(signals, delays, strict=True)):
         if signal is None:
             continue
-        if between.size:
-            value[:, i], slope[:, i] = signal.sample(time - delay)
-        else:
-            value[:, i], slope[:, i] = signal.grid(start - delay, step, count + 1)
-        if not all(-_LARGEST < x < _LARGEST for of in (value[:, i], slope[:, i]) for x in (of.min(), of.max())):
+        uniform = time.size == grid.size
+        found = signal.grid(start - delay, step, count + 1) if uniform else signal.sample(time - delay)
+        value[:, i], slope[:, i] = found
+        if not all(-_LARGEST < x < _LARGEST for of in found for x in (of.min(), of.max())):
             raise SimulationError(f"The signal {signal.label!r} is too large to compute with: beyond 1e100.")
         if broken[i].size:
             before.append((i, *_from_the_left(signal, delay, broken[i], time, step)))
@@ -233,7 +223,6 @@ def tabulate(
             leaps = np.abs(left - value[at, i]) > 1e-12 * max(float(np.abs(value[:, i]).max()), 1e-300)
             value_before[at[leaps], i] = left[leaps]
             jumped[at[leaps]] = True
-    odd = np.abs(np.diff(time) - step) > _SAME * step
     return InputTable(
         step=step,
         time=time,
@@ -241,12 +230,36 @@ def tabulate(
         slope=slope,
         value_before=value_before,
         slope_before=slope_before,
-        special=np.append(np.flatnonzero(odd), time.size + 1).astype(np.int64),
-        slot=slot.astype(np.int64),
-        sampled=time[slot >= 0],
+        special=np.append(odd, time.size + 1),
+        slot=slot,
+        sampled=grid[::every],
         moving=tuple(signal is not None for signal in signals),
         jumps=bool(jumped.any()),
     )
+
+
+def _between(broken: Matrix, start: float, step: float) -> Matrix:
+    """The breaks, each once, that lie between the multiples of a step."""
+    if not broken.size:
+        return broken
+    between: Matrix = np.unique(broken)
+    between = between[np.abs((between - start) / step - np.rint((between - start) / step)) > _SAME]
+    between = between[np.concatenate([[True], np.diff(between) > _SAME * step])[: between.size]]
+    return between
+
+
+def _knots(
+    grid: Matrix, between: Matrix, step: float, every: int
+) -> tuple[Matrix, NDArray[np.int64], NDArray[np.int64]]:
+    """The times of all knots, the number of the sample at each, or -1, and the segments of another length."""
+    slot = np.full(grid.size, -1, np.int64)
+    slot[::every] = np.arange(slot[::every].size)
+    if not between.size:
+        return grid, slot, np.zeros(0, np.int64)
+    order = np.argsort(np.concatenate([grid, between]), kind="stable")
+    time = np.concatenate([grid, between])[order]
+    slot = np.concatenate([slot, np.full(between.size, -1)])[order]
+    return time, slot, np.flatnonzero(np.abs(np.diff(time) - step) > _SAME * step)
 
 
 def tabulate_once(

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import SignalError
@@ -72,18 +71,18 @@ class Harmonics(Signal):
     def _by_transform(self, start: float, length: int, count: int) -> Pair:
         """One Fourier transform for a grid of `length` points per period; higher harmonics are aliased exactly."""
         orders = len(self.coefficient)
-        turn = 1.0 if start == 0.0 else self._waves(np.array([start]))[:, 0]
+        rows = self._rows if start == 0.0 else self._rows * self._waves(np.array([start]))[:, 0]
         if orders <= length / 2:
-            half = np.zeros((2, length // 2 + 1), complex)
-            np.multiply(self._rows, 0.5 * turn, out=half[:, 1 : orders + 1])
+            half = np.zeros((2, orders + 1), complex)  # the transform pads higher harmonics with zeros
+            np.multiply(0.5, rows, out=half[:, 1:])
             if orders == length / 2:  # which has no mirror image
-                half[:, -1] = 2.0 * half[:, -1].real
+                half[:, -1] = rows[:, -1].real
         else:
-            padded = np.pad(self._rows * turn, ((0, 0), (1, -(orders + 1) % length)))
+            padded = np.pad(rows, ((0, 0), (1, -(orders + 1) % length)))
             spectrum = padded.reshape(2, -1, length).sum(axis=1)
             mirrored = np.roll(spectrum[:, ::-1], 1, axis=1).conj()
             half = 0.5 * (spectrum + mirrored)[:, : length // 2 + 1]
-        value, slope = scipy.fft.irfft(half, length, norm="forward")  # both side by side, in half of NumPy's time
+        value, slope = np.fft.irfft(half, length, norm="forward")
         if count <= length:
             return value[:count], slope[:count]
         return np.resize(value, count), np.resize(slope, count)

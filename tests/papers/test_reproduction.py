@@ -362,9 +362,8 @@ def test_a_claim_is_as_good_as_its_worst_statement() -> None:
     assert combined_verdict([SHOWN, SHOWN]) is SHOWN
     assert combined_verdict([SHOWN, UNDETERMINED]) is UNDETERMINED
     assert combined_verdict([UNDETERMINED, CONTRADICTED, SHOWN]) is CONTRADICTED
-    mixed = Claim(
-        0, "", (ClaimPart("this", SHOWN, CONTRADICTED), ClaimPart("that", UNDETERMINED, None, "1 %")), "N. B."
-    )
+    parts = ClaimPart("this", SHOWN, CONTRADICTED), ClaimPart("that", UNDETERMINED, None, "1 %")
+    mixed = Claim(0, parts, "N. B.")
     assert mixed.headline == "undetermined in 1 of 2 statements; printed numbers contradicted"
     assert mixed.evidence == "this [shown; printed number contradicted]; that [undetermined; detectable: 1 %]. N. B."
 

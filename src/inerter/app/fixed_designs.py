@@ -12,6 +12,7 @@ from typing import Any
 
 from inerter.app.designs import Design
 from inerter.errors import DesignError
+from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.places import free_in_vehicle
 from inerter.files.study.study import Study
 
@@ -32,9 +33,9 @@ def with_fixed_values(document: Mapping[str, Any], study: Study, designs: Sequen
     free = {name for design in designs for name in design.values}
     kept = {name: entry for name, entry in made["elements"].items() if name not in free}
     made["elements"] = {**kept, **elements}
-    keys = _keys(designs)
+    keys, layout = _keys(designs), LayoutCodec()
     made["layouts"] = {
-        key: _entry(made["layouts"][design.layout], {name: new for (k, name), new in names.items() if k == key})
+        key: layout.rename(made["layouts"][design.layout], {name: new for (k, name), new in names.items() if k == key})
         for key, design in zip(keys, designs, strict=True)
     }
     settings = {key: value for key, value in made["study"].items() if key not in _SEARCH}
@@ -84,9 +85,3 @@ def _free_name(wanted: str, study: Study, taken: Mapping[str, str]) -> str:
     while wanted in study.elements or wanted in taken:
         wanted += "_"
     return wanted
-
-
-def _entry(entry: Any, names: Mapping[str, str]) -> Any:
-    if isinstance(entry, Mapping):
-        return {mount: _entry(text, names) for mount, text in entry.items()}
-    return re.sub(r"[A-Za-z][A-Za-z0-9_]*", lambda found: names.get(found[0], found[0]), entry)

@@ -43,9 +43,6 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
     ranking = _Ranking(document, study, search_plans(study))
     done = [0]
 
-    def on_groups(groups: list[GroupResult]) -> None:
-        ranking.add(groups)
-
     def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
         done[0] = count
         tell(count, total, ranking.progress(last), ranking.so_far())
@@ -61,7 +58,7 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
         resume=True,
         progress=on_part_done,
         compiling=tell_compiling(tell),
-        on_groups=on_groups,
+        on_groups=ranking.add,
         finish=show,
     )
     return ranking.final(found)
@@ -267,4 +264,4 @@ _MOST_INDICES = 3  # of a front
 
 
 def _value(value: float, status: Status) -> dict[str, Any]:
-    return {"value": value, "status": status.kind.value, "message": status.message}
+    return {"value": value, **status.to_json()}

@@ -18,7 +18,7 @@ from inerter.figures.labels import (
     one_method,
     swept_places,
 )
-from inerter.formatting import format_quantity
+from inerter.formatting import capital, format_quantity
 from inerter.methods.registry import brief_words_of
 from inerter.report.index_summary import best_layouts, extremes, place_text
 from inerter.report.json_data import json_data
@@ -66,12 +66,12 @@ def speed_sentences(results: xr.Dataset) -> SpeedSentences:
             late = np.ptp(_beyond_speed(results, where)) > 1e-6
             doubts = _messages(results, where)
             if doubts:
-                begin = f"{sentence[0].upper()}{sentence[1:]}"
+                begin = capital(sentence)
                 found.doubts.append(f"Not certain at other speeds: {'; '.join(doubts)}. {begin}")
             elif lost:
                 found.doubts.append(f"Not certain away from {_at(results, 1)}: {sentence}")
             elif late:
-                found.others.append(f"{sentence[0].upper()}{sentence[1:]}")
+                found.others.append(capital(sentence))
         elif reason := _reason(results, where):
             found.doubts.append(
                 f"Not certain away from {_at(results, 1)}: what the best design{_of(results, where)} "

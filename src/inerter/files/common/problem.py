@@ -11,6 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
 from inerter.errors import InerterError
+from inerter.formatting import capital
 from inerter.statements import Severity, Statement
 from inerter.units import quote_value
 
@@ -53,8 +54,7 @@ class EntryError(ValueError):
         super().__init__(self.problem)
 
     def __str__(self) -> str:
-        sentence = str(self.problem)
-        return f"{sentence[0].upper()}{sentence[1:]}"
+        return capital(str(self.problem))
 
 
 def invalid_entry(entry: object, *, fault: str = "", expected: str = "", hint: str = "") -> EntryError:

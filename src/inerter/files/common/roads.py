@@ -26,7 +26,7 @@ from inerter.files.common.codec import (
 from inerter.files.common.entries import TEXT, QuantityCodec, declaration_of, word
 from inerter.files.common.problem import EntryError, Problem, at, invalid_entry
 from inerter.files.common.suggest import some
-from inerter.formatting import format_number, format_quantity, format_range, format_share
+from inerter.formatting import capital, format_number, format_quantity, format_range, format_share
 from inerter.roads.spectrum import N0, POINTS, SAMPLING, RoadSpectrum, road_spectrum
 from inerter.signals.coherence import Coherence
 from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
@@ -285,7 +285,7 @@ def remark(line: MeasuredLine | None) -> str:
     if line is None:
         return ""
     text = (
-        f"{line.note[0].upper()}{line.note[1:]}. Results of this file have that roughness, and leave the errors of the "
+        f"{capital(line.note)}. Results of this file have that roughness, and leave the errors of the "
         f"line out. SHA-256 of the file: {line.digest}"
     )
     return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"

@@ -23,7 +23,6 @@ from inerter.papers.wang_su_2008.judging import (
     within,
 )
 from inerter.papers.wang_su_2008.over_stiffness import Curves
-from inerter.papers.wang_su_2008.paper import CLAIMS
 
 _SOFT = 60e3  # [N/m] half the stiffness for which Table 1 is printed: what is called small here
 _LAYOUTS = ("S2", "S3")
@@ -31,7 +30,7 @@ _LAYOUTS = ("S2", "S3")
 
 def elastic_claims(curves: Curves, between: Found) -> list[Claim]:
     """Claims on Figure 11: an elastic shaft alone."""
-    return [_claim_1(curves), _claim_2(curves, between), _claim_3(curves, between)]
+    return [Claim(1, _shrinks(curves, "J1")), _claim_2(curves, between), _claim_3(curves, between)]
 
 
 def friction_claims(curves: Curves) -> list[Claim]:
@@ -85,10 +84,6 @@ def _shrinks(curves: Curves, index: str) -> list[ClaimPart]:
     return parts
 
 
-def _claim_1(curves: Curves) -> Claim:
-    return Claim(1, CLAIMS[1], tuple(_shrinks(curves, "J1")))
-
-
 def _claim_2(curves: Curves, between: Found) -> Claim:
     parts = []
     for kind in ("soft", "hard"):
@@ -100,7 +95,7 @@ def _claim_2(curves: Curves, between: Found) -> Claim:
         once = combined_verdict(ends) if len(found) == 1 else ClaimVerdict.CONTRADICTED
         number = within(EstimatedQuantity(found[0]), *rounding_interval(120e3, curves.step)) if found else None
         parts.append(statement(text, once, number, by=_percent([gaps[0], gaps[-1]])))
-    return Claim(2, CLAIMS[2], tuple(parts))
+    return Claim(2, parts)
 
 
 def _claim_3(curves: Curves, between: Found) -> Claim:
@@ -112,7 +107,7 @@ def _claim_3(curves: Curves, between: Found) -> Claim:
         word = "worse" if there.value > 0.0 else "better"
         text = f"at 55 kN/m S3 {kind} is {abs(100.0 * there.value):.2f} % {word} than S1{where}"
         parts.append(statement(text, within(there, low=WORSE), by=[there.times(100.0)]))
-    return Claim(3, CLAIMS[3], tuple(parts))
+    return Claim(3, parts)
 
 
 def _claim_4(curves: Curves) -> Claim:
@@ -136,7 +131,7 @@ def _claim_4(curves: Curves) -> Claim:
         last = curves.uncertain_excess(f"{layout}-10N", "S1", "J1")[-1].times(100.0)
         text = f"J1 of {layout} with 10 N is {_against(last)} than S1's at k = {kilo(curves.k[-1:], '', 0)} kN/m"
         parts.append(statement(text, within(last, high=-100.0 * WORSE), by=[last]))
-    return Claim(4, CLAIMS[4], tuple(parts))
+    return Claim(4, parts)
 
 
 def _claim_5(curves: Curves) -> Claim:
@@ -152,7 +147,7 @@ def _claim_5(curves: Curves) -> Claim:
                 text = f"{index} of {layout} with {force} N: worse than S1's at k = {at} kN/m, "
                 text += f"by up to {largest.value:.2f} %"
             parts.append(statement(text, somewhere_above(gaps, 100.0 * WORSE), by=gaps, at_once=len(gaps)))
-    return Claim(5, CLAIMS[5], tuple(parts), note=f"Evaluated up to k = {kilo([_SOFT], '', 0)} kN/m.")
+    return Claim(5, parts, note=f"Evaluated up to k = {kilo([_SOFT], '', 0)} kN/m.")
 
 
 def _worst(curves: Curves, layout: str, kinds: Sequence[str], index: str) -> ClaimPart:
@@ -174,7 +169,7 @@ def _claim_8(curves: Curves) -> Claim:
         once = combined_verdict(ends) if len(found) == 1 else combined_verdict([*ends, ClaimVerdict.UNDETERMINED])
         parts.append(statement(text, once, _near(found, printed, curves.step), by=[gaps[0], gaps[-1]]))
         parts.append(_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J1"))
-    return Claim(8, CLAIMS[8], tuple(parts))
+    return Claim(8, parts)
 
 
 def _claim_9(curves: Curves) -> Claim:
@@ -200,8 +195,7 @@ def _claim_9(curves: Curves) -> Claim:
     ]
     return Claim(
         9,
-        CLAIMS[9],
-        tuple(parts),
+        parts,
         note="≈: no certain difference of more than 0.01 %. Friction alone and elasticity alone are equal in "
         f"{' and in '.join(equal)}.",
     )
@@ -226,7 +220,7 @@ def _claim_10(curves: Curves) -> Claim:
     verdict = combined_verdict([somewhere_above(below, WORSE), within(gaps[-1], high=-WORSE)])
     number = _near(found, 140e3, curves.step)
     parts.append(statement(text, verdict, number, by=_percent([*below, gaps[-1]]), at_once=len(below)))
-    return Claim(10, CLAIMS[10], tuple(parts))
+    return Claim(10, parts)
 
 
 def claim_13(evidence: Evidence) -> Claim:
@@ -245,7 +239,7 @@ def claim_13(evidence: Evidence) -> Claim:
     spread = np.array([one.value for one in half])
     text = f"half car, Method 2: {spread.min():.1f} to {spread.max():.1f} % better"
     parts.append(statement(text, everywhere(half, low=0.0), by=half, at_once=len(half)))
-    return Claim(13, CLAIMS[13], tuple(parts))
+    return Claim(13, parts)
 
 
 def _against(gap: EstimatedQuantity) -> str:

@@ -14,6 +14,7 @@ import scipy
 import xarray as xr
 
 from inerter.papers.wang_su_2008.between import Found
+from inerter.papers.wang_su_2008.paper import CLAIMS
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 
 RULE = (
@@ -163,9 +164,13 @@ class Claim:
     """Claim of the paper, with the verdicts on its statements."""
 
     number: int
-    statement: str
-    parts: tuple[ClaimPart, ...]
+    parts: Sequence[ClaimPart]
     note: str = ""
+
+    @property
+    def statement(self) -> str:
+        """The claim as the paper states it."""
+        return CLAIMS[self.number]
 
     @property
     def verdict(self) -> ClaimVerdict:

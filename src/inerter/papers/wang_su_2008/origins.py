@@ -28,8 +28,8 @@ def origins(found: Reproduction) -> list[Reason]:
     result: list[Reason] = []
     rows = list(found.rows.values())
     if found.linear is not None:
-        result += [_pade(found.linear), _filter(found.linear), _lever(), _not_optimal(found.linear)]
-        result += [_root_of_the_road(), *_slips()]
+        result += [_pade(found.linear), _filter(found.linear), _LEVER, _not_optimal(found.linear)]
+        result += [_root_of_the_road(), *_SLIPS]
     expected = [row for row in rows if row.row.table in (1, 3)]
     if expected:
         result += [_hold(expected), _single_peak(expected), _from_rest(expected), _scatter(expected)]
@@ -66,12 +66,11 @@ def _filter(linear: LinearTables) -> Reason:
     )
 
 
-def _lever() -> Reason:
-    return Reason(
-        "A lever that the formula of J1 leaves out",
-        "J1 of the half car adds the pitch acceleration times the mean distance of the axles, (l_f + l_r)/2 = 1.02 m; "
-        "the printed formula lacks this factor, the printed numbers include it.",
-    )
+_LEVER = Reason(
+    "A lever that the formula of J1 leaves out",
+    "J1 of the half car adds the pitch acceleration times the mean distance of the axles, (l_f + l_r)/2 = 1.02 m; "
+    "the printed formula lacks this factor, the printed numbers include it.",
+)
 
 
 def _not_optimal(linear: LinearTables) -> Reason:
@@ -196,18 +195,17 @@ def _root_of_the_road() -> Reason:
     )
 
 
-def _slips() -> list[Reason]:
-    return [
-        Reason(
-            "One sequence of random numbers for both noises",
-            "Maximum and mean of the noise in Method 1 are 13.91 and 2.53 mm for the road, 1967 and 357.9 N for the "
-            f"force: their ratios, {13.91 / 2.53:.2f} and {1967 / 357.9:.2f}, are the same, so one record was scaled "
-            "for both (and doubled for the half car). One such record is one draw, whatever it is scaled to.",
-        ),
-        Reason(
-            "Misprints",
-            "Table 3 gives c_f = 44404.4 N s/m for S1 and J3, where Table 2 has 4404.4, which also gives the printed "
-            "value. Its case 10 says S3 (dN) for 100 N. Figure 13(b) is labelled J4 for J1. The text on Method 1 "
-            "names the tyre k_r for k_t.",
-        ),
-    ]
+_SLIPS = [
+    Reason(
+        "One sequence of random numbers for both noises",
+        "Maximum and mean of the noise in Method 1 are 13.91 and 2.53 mm for the road, 1967 and 357.9 N for the "
+        f"force: their ratios, {13.91 / 2.53:.2f} and {1967 / 357.9:.2f}, are the same, so one record was scaled "
+        "for both (and doubled for the half car). One such record is one draw, whatever it is scaled to.",
+    ),
+    Reason(
+        "Misprints",
+        "Table 3 gives c_f = 44404.4 N s/m for S1 and J3, where Table 2 has 4404.4, which also gives the printed "
+        "value. Its case 10 says S3 (dN) for 100 N. Figure 13(b) is labelled J4 for J1. The text on Method 1 "
+        "names the tyre k_r for k_t.",
+    ),
+]

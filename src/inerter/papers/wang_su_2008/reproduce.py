@@ -71,23 +71,21 @@ def work(task: PaperItem) -> tuple[tuple[str, str], Numbers]:
     return task.key, {**numbers, "seconds": round(time.perf_counter() - begin, 3)}
 
 
+_COMPUTE: dict[str, Callable[[str], Numbers]] = {
+    "rig": rig.compute,
+    "between": between.compute,
+    "methods": agreement.compute,
+    "optima": beyond.compute_optimum,
+    "budgets": beyond.compute_budget,
+}
+
+
 def _numbers(task: PaperItem) -> Numbers:
-    match task.part:
-        case "table1" | "table2" | "table3":
-            return rows.compute(int(task.part[-1]), task.name)
-        case "rig":
-            return rig.compute(task.name)
-        case "curves":
-            return curves.compute(task.name, dict(task.given))
-        case "between":
-            return between.compute(task.name)
-        case "methods":
-            return agreement.compute(task.name)
-        case "optima":
-            return beyond.compute_optimum(task.name)
-        case "budgets":
-            return beyond.compute_budget(task.name)
-    raise ValueError(task.part)
+    if task.part == "curves":
+        return curves.compute(task.name, dict(task.given))
+    if task.part in _COMPUTE:
+        return _COMPUTE[task.part](task.name)
+    return rows.compute(int(task.part.removeprefix("table")), task.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +145,10 @@ def reproduce(
         tasks = [PaperItem("rig", rig.NAME)] if "rig" in wanted else []
         tasks += [PaperItem(part, name) for part, names in listed.items() if part in wanted for name in names()]
         tasks += [
-            PaperItem(part, name) for part in ("table2", "table3", "table1") if part in wanted for name in _rows(part)
+            PaperItem(f"table{number}", name)
+            for number in (2, 3, 1)
+            if f"table{number}" in wanted
+            for name in rows.names(number)
         ]
         figure11 = _figure11(studies)
         if figure11 is not None and "linear" in wanted:
@@ -214,10 +215,6 @@ def _put_together(
 
 def _figure11(studies: dict[str, StudyResult]) -> xr.Dataset | None:
     return studies["figure11"].data.sel({"method": "norm"}) if "figure11" in studies else None
-
-
-def _rows(part: str) -> list[str]:
-    return rows.names(int(part[-1]))
 
 
 def _curve(name: str, studies: dict[str, StudyResult]) -> PaperItem:

@@ -13,7 +13,6 @@ from inerter.papers.wang_su_2008.judging import (
     statement,
     within,
 )
-from inerter.papers.wang_su_2008.paper import CLAIMS
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 
 _STEP = 0.5  # percentage points: the steps in which the paper gives losses (0.5, 1, 2.5)
@@ -49,7 +48,7 @@ def _claim_6(evidence: Evidence) -> Claim:
         f"{layout} {_points(evidence.cost(1, 'J1', *cases))}" for layout, cases in {"S2": (2, 5), "S3": (7, 10)}.items()
     ]
     note = f"Negligible: less than half a percentage point. With 100 N J1 loses {' and '.join(ride)} {_POINTS}."
-    return Claim(6, CLAIMS[6], tuple(parts), note)
+    return Claim(6, parts, note)
 
 
 def _claim_7(evidence: Evidence) -> Claim:
@@ -64,7 +63,7 @@ def _claim_7(evidence: Evidence) -> Claim:
             text = f"{layout} with {force} N: {change.value:+.2f} % over all frequencies"
             parts.append(statement(text, verdict, by=[change]))
             followed.append(_nearest_peak_text(layout, force, row, reference))
-    return Claim(7, CLAIMS[7], tuple(parts), note=f"At the peak nearest to the printed value: {'; '.join(followed)}.")
+    return Claim(7, parts, note=f"At the peak nearest to the printed value: {'; '.join(followed)}.")
 
 
 def _nearest_peak_text(layout: str, force: int, row: SimulatedRow, reference: SimulatedRow) -> str:
@@ -80,7 +79,7 @@ def _claim_11(evidence: Evidence) -> Claim:
         for layout, cases in {"S2": (2, 6), "S3": (7, 11)}.items()
         for index in ranges
     ]
-    return Claim(11, CLAIMS[11], tuple(parts))
+    return Claim(11, parts)
 
 
 def claim_12(evidence: Evidence) -> Claim:
@@ -100,4 +99,4 @@ def claim_12(evidence: Evidence) -> Claim:
         _loss(f"Method 1, J5 of {layout}", evidence.cost(2, "J5", *pair), *rounding_interval(8.0, 1.0))
         for layout, pair in cases.items()
     ]
-    return Claim(12, CLAIMS[12], tuple(parts))
+    return Claim(12, parts)

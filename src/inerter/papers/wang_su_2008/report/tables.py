@@ -128,7 +128,11 @@ def _simulated_table(number: int, rows: list[SimulatedRow]) -> Table:
 
 
 def _simulated_row(r: SimulatedRow) -> Row:
-    improvement = Cell() if r.improvement is None else _percent_cell(r.improvement, f"printed {r.row.improvement} %")
+    improvement = (
+        Cell()
+        if r.improvement is None
+        else Cell(f"{format_number(r.improvement, 4)} %", f"printed {r.row.improvement} %")
+    )
     found = [
         *cells(_design(r.row), r.row.table, r.row.index, r.row.case, r.row.title, r.unit),
         Cell(Shown(r.row.value, r.row.printed)),
@@ -256,10 +260,6 @@ def _number(value: float, digits: int = 6) -> Shown:
 def _value_with_error(value: float, error: float) -> Shown:
     """A value with its standard error; with six digits if it has none."""
     return Shown(value, format_uncertain(value, error) if error > 0.0 else format_number(value))
-
-
-def _percent_cell(value: float, remark: str) -> Cell:
-    return Cell(f"{format_number(value, 4)} %", remark)
 
 
 def _percent_text(value: float) -> str:

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import add_curve_legend, axes_pair, curve_looks
+from inerter.figures.plots.axes import axes_pair, curve_looks, label_gain_and_phase
 from inerter.figures.plots.responses import check_frequencies
-from inerter.figures.style import log_axis, style_context
+from inerter.figures.style import style_context
 from inerter.networks.elements.algebra import Network, check_network
 
 _POINTS = 800  # frequencies
@@ -41,12 +41,6 @@ def plot_admittance(
             value = check_network(network).admittance(2j * np.pi * hertz)
             upper.plot(hertz, np.abs(value), **look)
             lower.plot(hertz, np.angle(value, deg=True), **look)
-        upper.set(ylabel=axis_label("Admittance", "N s/m"))
-        lower.set(xlabel=axis_label("Frequency", "Hz"), ylabel=axis_label("Phase", "deg"))
+        label_gain_and_phase(upper, lower, axis_label("Admittance", "N s/m"), len(named))
         lower.set_yticks([-90.0, -45.0, 0.0, 45.0, 90.0])
-        for ax in (upper, lower):
-            log_axis(ax, "x")
-            ax.margins(x=0.0)
-        log_axis(upper, "y")
-        add_curve_legend(upper, len(named))
     return upper, lower

@@ -7,7 +7,8 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from inerter.figures.style import colour, layout_styles, new_figure
+from inerter.figures.labels import axis_label
+from inerter.figures.style import colour, layout_styles, log_axis, new_figure
 
 
 def single_axes(ax: Axes | None) -> Axes:
@@ -19,6 +20,25 @@ def axes_pair(axes: Sequence[Axes] | None) -> tuple[Axes, Axes]:
     """The two axes that are given, or new ones above one another."""
     upper, lower = axes if axes is not None else new_figure(2, height=2.0, width=4.6)[1]
     return upper, lower
+
+
+def label_gain_and_phase(upper: Axes, lower: Axes, gain: str, count: int) -> None:
+    """Labels, scales and the legend of a gain above a phase over frequency, of so many curves."""
+    upper.set(ylabel=gain)
+    lower.set(xlabel=axis_label("Frequency", "Hz"), ylabel=axis_label("Phase", "deg"))
+    for ax in (upper, lower):
+        log_axis(ax, "x")
+        ax.margins(x=0.0)
+    log_axis(upper, "y")
+    add_curve_legend(upper, count)
+
+
+def label_complex_plane(ax: Axes, real: str, imaginary: str, count: int) -> None:
+    """Labels with these units, lines through zero and the legend of so many curves in the complex plane."""
+    ax.axhline(0.0, color="#999999", linewidth=0.6)
+    ax.axvline(0.0, color="#999999", linewidth=0.6)
+    ax.set(xlabel=axis_label("Real part", real), ylabel=axis_label("Imaginary part", imaginary))
+    add_curve_legend(ax, count)
 
 
 def curve_looks(named: Mapping[str, Any]) -> list[dict[str, Any]]:

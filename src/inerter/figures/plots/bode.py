@@ -9,10 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import add_curve_legend, axes_pair
+from inerter.figures.plots.axes import axes_pair, label_gain_and_phase
 from inerter.figures.plots.responses import Designs, Response, response_curves
-from inerter.figures.style import log_axis, style_context
+from inerter.figures.style import style_context
 
 Array = NDArray[np.float64]
 _HALF_TURN = 180.0  # [deg]
@@ -44,14 +43,8 @@ def plot_bode(
         for curve in curves:
             upper.plot(curve.frequency, np.abs(curve.value), **curve.look)
             lower.plot(*_wrapped_phase(curve.frequency, curve.value), **curve.look)
-        upper.set(ylabel=curves[0].gain_label)
-        lower.set(xlabel=axis_label("Frequency", "Hz"), ylabel=axis_label("Phase", "deg"))
-        for ax in (upper, lower):
-            log_axis(ax, "x")
-            ax.margins(x=0.0)
-        log_axis(upper, "y")
+        label_gain_and_phase(upper, lower, curves[0].gain_label, len(curves))
         lower.yaxis.set_major_locator(_degrees(lower))
-        add_curve_legend(upper, len(curves))
     return upper, lower
 
 

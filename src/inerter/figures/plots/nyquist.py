@@ -5,8 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import add_curve_legend, single_axes
+from inerter.figures.plots.axes import label_complex_plane, single_axes
 from inerter.figures.plots.responses import Designs, Response, response_curves
 from inerter.figures.style import style_context
 
@@ -27,10 +26,6 @@ def plot_nyquist(
         for curve in curves:
             ax.plot(curve.value.real, curve.value.imag, **curve.look)
             ax.plot(curve.value.real[:1], curve.value.imag[:1], "o", color=curve.look["color"], markersize=3.5)
-        unit = curves[0].unit
-        ax.set(xlabel=axis_label("Real part", unit), ylabel=axis_label("Imaginary part", unit))
-        ax.axhline(0.0, color="#999999", linewidth=0.6)
-        ax.axvline(0.0, color="#999999", linewidth=0.6)
         ax.set_aspect("equal", adjustable="datalim")
-        add_curve_legend(ax, len(curves))
+        label_complex_plane(ax, curves[0].unit, curves[0].unit, len(curves))
     return ax

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import add_curve_legend, single_axes
+from inerter.figures.plots.axes import label_complex_plane, single_axes
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import colour, style_context
 from inerter.formatting import format_number
@@ -31,14 +30,11 @@ def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
             poles = np.linalg.eigvals(state_space(vehicle).A)
             reach = max(reach, float(np.abs(poles.imag).max(initial=0.0)))
             ax.plot(poles.real, poles.imag, "x", color=colour(number), label=name, markersize=5)
-        ax.axhline(0.0, color="#999999", linewidth=0.6)
-        ax.axvline(0.0, color="#999999", linewidth=0.6)
         for ratio in (0.1, 0.3, 0.7) if reach else ():
             ray = np.array([0.0, reach])
             ax.plot(-ratio / np.sqrt(1.0 - ratio**2) * ray, ray, ":", color="#AAAAAA", linewidth=0.7)
             ax.annotate(
                 format_number(ratio), (-ratio / np.sqrt(1.0 - ratio**2) * reach, reach), color="#777777", fontsize=6.5
             )
-        ax.set(xlabel=axis_label("Real part", "1/s"), ylabel=axis_label("Imaginary part", "rad/s"))
-        add_curve_legend(ax, len(named))
+        label_complex_plane(ax, "1/s", "rad/s", len(named))
     return ax

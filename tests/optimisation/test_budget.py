@@ -83,6 +83,55 @@ def test_friction_budget_by_a_root_and_larger_for_a_worse_baseline():
     assert budgets == sorted(budgets)
 
 
+def with_inertance(friction, damping=3000.0):
+    return paper_quarter_car(Spring(40e3) | Damper(damping) | Inerter(20.0) | Friction(friction, "f"))
+
+
+def with_the_value_of(friction, index):
+    """A conventional car that has the value of `with_inertance(friction)` by statistical linearisation."""
+    level = value(with_inertance(friction), index, Linearisation())
+    damping = scipy.optimize.brentq(lambda c: value(conventional(40e3, c), index, Norm()) - level, 2e3, 2e4)
+    return conventional(40e3, damping)
+
+
+@pytest.mark.parametrize(("friction", "index"), [(20.0, J3), (60.0, J1), (100.0, J3)])
+def test_a_break_even_value_is_as_uncertain_as_the_values_that_are_equal_there(friction, index):
+    """At the ends of what its bound allows the values differ by as much as they may be off."""
+    baseline = with_the_value_of(friction, index)
+    wanted = {"parameter": "f", "method": Linearisation(), "bounds": (friction / 3.0, friction * 3.0)}
+    found = break_even(with_inertance(0.0), baseline, index, **wanted)
+    assert found.value == pytest.approx(friction, rel=1e-4)
+    here = it.evaluate(with_inertance(friction), index, Linearisation())
+    off = here.error_bound * here.value
+    far = value(with_inertance(friction * (1.0 + found.error_bound)), index, Linearisation())
+    near = value(with_inertance(friction / (1.0 + found.error_bound)), index, Linearisation())
+    assert here.status.ok
+    assert 0.5 * (far - near) == pytest.approx(off, rel=0.15)
+    assert found.error_bound == found.crossings[0].error_bound
+    if found.error_bound > 0.1:
+        assert found.status.kind is StatusKind.INACCURATE
+        assert "break-even value with a relative error of up to" in found.status.message
+    else:
+        assert found.status.ok
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize(("friction", "index"), sampled([(20.0, J3), (60.0, J1), (100.0, J3)], kept=2))
+def test_break_even_friction_is_within_its_bound_of_that_of_simulations(friction, index):
+    """At 100 N the frictions are 7 % apart, where the values are within 1 %."""
+    baseline = with_the_value_of(friction, index)
+    wanted = {"parameter": "f", "bounds": (friction / 3.0, friction * 3.0)}
+    found = break_even(with_inertance(0.0), baseline, index, method=Linearisation(), **wanted)
+    true = break_even(with_inertance(0.0), baseline, index, method=ExpectedValue(realisations=8, seed=2), **wanted)
+    apart = abs(found.value / true.value - 1.0)
+    assert apart < found.error_bound + true.error_bound + 4.0 * true.standard_error / true.value
+
+
+def test_the_bound_of_a_break_even_value_of_exact_values_is_of_rounding():
+    found = break_even(series(), conventional(), J1, parameter="k", method=Norm(), bounds=(1e4, 3e5))
+    assert found.error_bound < 1e-7
+
+
 @pytest.mark.marathon
 def test_a_friction_budget_of_simulated_values_is_where_the_difference_vanishes():
     method = ExpectedValue(realisations=3, seed=2)

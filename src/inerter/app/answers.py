@@ -229,9 +229,11 @@ def break_even(study: Study, body: Body) -> Answer:
         "value": found.value,
         "standard_error": found.standard_error,
         "interval": found.interval,
+        "error_bound": found.error_bound,
         "bounds": found.bounds,
         "crossings": [
-            {"value": c.value, "standard_error": c.standard_error, "better": c.better} for c in found.crossings
+            {"value": c.value, "standard_error": c.standard_error, "error_bound": c.error_bound, "better": c.better}
+            for c in found.crossings
         ],
         "ranges": [{"lower": r.lower, "upper": r.upper, "better": r.better} for r in found.ranges],
         **found.status.to_json(),

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
-from inerter.formatting import format_alike, format_range
+from inerter.formatting import format_alike, format_range, format_share
 from inerter.methods.compare import Comparison, compare
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.conditions import values_changed
@@ -29,6 +29,7 @@ _POINTS = 16  # of the grid between which crossings are sought
 _REACH = 1e3  # ratio of the default bounds to the present value
 _SLOPE = 0.02  # relative step of the slope's difference
 _WITHIN, _EXACTLY = 1e-5, 1e-11  # relative error of a crossing, of values with and without errors of the method
+_PROMISE = 0.1  # relative error of a break-even value that is ok, sampling apart
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,7 @@ class Crossing:
     interval: tuple[float, float]  # 95 % confidence interval
     better: str  # side on which the index of the design is lower: "below" or "above"
     status: Status = OK
+    error_bound: float = np.nan  # relative, sampling apart
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,9 @@ class BreakEven:
     `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
     nan, with the reason in `status`, where the design is better (or worse) at every value between `bounds`. All are in
     SI units; `interval` is the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are
-    nan for a method that models friction and has none. `status` is no better than the worst of the compared estimates.
+    nan for a method that models friction and has none. `error_bound` is the largest relative error, sampling apart,
+    that the error bounds of the two index values allow. `status` is no better than the worst of the compared estimates,
+    and ok means that `error_bound` is no larger than 10 %, as far as it is known.
 
     >>> import inerter as it
     >>> good = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0, name="valve"))
@@ -81,6 +85,7 @@ class BreakEven:
     bounds: tuple[float, float]
     status: Status
     evaluations: int
+    error_bound: float = np.nan
 
 
 def break_even(
@@ -99,8 +104,8 @@ def break_even(
     Where the baseline has it too, it changes there in the same way, which gives the crossing of two curves over a
     stiffness. Values between `bounds` (SI; by default a thousandth to a thousand times the present value) are evaluated
     on a logarithmic grid, and each change of sign is located by Brent's method, on the same roads throughout. The
-    standard error of a crossing is that of the difference, over the slope. An `executor` shares the roads, as that of
-    `evaluate` does.
+    standard error of a crossing is that of the difference, over the slope, as is its error bound. An `executor` shares
+    the roads, as that of `evaluate` does.
 
     Two crossings between neighbouring points of the grid are not detected: narrow the bounds where that is possible.
 
@@ -157,7 +162,7 @@ def _budget(
     grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()
     gaps = [difference(at) for at in grid]
     crossings = tuple(
-        _crossing(difference, known, a, b, exact=exact)
+        _crossing(difference, known, a, b, parameter, exact=exact)
         for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
         if np.isfinite(left + right) and (left < 0.0) != (right < 0.0)
     )
@@ -177,6 +182,7 @@ def _budget(
         bounds=between,
         status=_status(ranges, end, [*asked, *(() if end is None else (end.status,))], parameter, chosen[0].unit),
         evaluations=len(known),
+        error_bound=np.nan if end is None else end.error_bound,
     )
 
 
@@ -251,21 +257,44 @@ def _with_fixed_roads(design: Vehicle, index: IndexLike, method: Method) -> Meth
 
 
 def _crossing(
-    difference: Callable[[float], float], known: dict[float, Comparison], a: float, b: float, *, exact: bool
+    difference: Callable[[float], float],
+    known: dict[float, Comparison],
+    a: float,
+    b: float,
+    parameter: str,
+    *,
+    exact: bool,
 ) -> Crossing:
-    root = float(scipy.optimize.brentq(difference, a, b, xtol=_EXACTLY if exact else _WITHIN))
+    within = _EXACTLY if exact else _WITHIN
+    root = float(scipy.optimize.brentq(difference, a, b, xtol=within))
     rising = difference(b) > difference(a)
-    slope = (difference(root + _SLOPE) - difference(root - _SLOPE)) / (2.0 * _SLOPE)
+    slope = abs((difference(root + _SLOPE) - difference(root - _SLOPE)) / (2.0 * _SLOPE))
     difference(root)
     here = known[root]
     found = here.difference
-    error, reach = (part / abs(slope) if slope else np.inf for part in (found.standard_error, found.reach))
+    off = sum(abs(one.value) * one.error_bound for one in (here.first, here.second))
+    error, reach, most = (part / slope if slope else np.inf for part in (found.standard_error, found.reach, off))
     if not exact and here.first.standard_error is None and here.second.standard_error is None:
-        error = reach = np.nan  # the error of the method is unknown
+        error = reach = np.nan  # there is none
     value = float(np.exp(root))
     with np.errstate(over="ignore"):
         interval = (value * float(np.exp(-reach)), value * float(np.exp(reach)))
-    return Crossing(value, value * error, interval, "below" if rising else "above", here.status)
+        bound = float(np.expm1(most + within))
+    status = worst_of((here.status, _within_promise(bound, here, parameter)))
+    return Crossing(value, value * error, interval, "below" if rising else "above", status, bound)
+
+
+def _within_promise(bound: float, here: Comparison, parameter: str) -> Status:
+    """Inaccurate where the errors of the two compared values may move their crossing by more than is promised."""
+    if not bound > _PROMISE:
+        return OK
+    first, second = (format_share(one.error_bound, 2) for one in (here.first, here.second))
+    return Status(
+        StatusKind.INACCURATE,
+        f"break-even value with a relative error of up to {format_share(bound, 2)}, more than "
+        f"{format_share(_PROMISE, 2)}: the values compared may be off by {first} and {second}, and change little with "
+        f"{parameter}",
+    )
 
 
 def _ranges(

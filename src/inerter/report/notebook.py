@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 
 from inerter.errors import OK, Status
 from inerter.formatting import capital, format_number, format_quantity, format_with_interval
@@ -56,8 +57,11 @@ def optimum_html(found: Optimum) -> str:
 
 def break_even_html(found: BreakEven) -> str:
     """Break-even value with its interval."""
-    facts: list[Fact] = [(found.parameter, Quantity(found.value, found.unit, error=found.standard_error))]
+    error, bound = found.standard_error, found.error_bound
+    facts: list[Fact] = [(found.parameter, Quantity(found.value, found.unit, error=error, bound=bound))]
     facts.append(("95 % interval", _interval(found.value, found.interval, found.unit)))
+    if isfinite(bound):
+        facts.append(("largest relative error", format_number(bound, 2)))
     return _html(_facts("Break-even value", facts), found.status)
 
 

@@ -31,7 +31,10 @@ from inerter.vehicle.vehicle import Vehicle
 if TYPE_CHECKING:
     import xarray as xr
 
-_KEYS = ("index", "layout", "method", "better", "value", "unit", "standard_error", "low", "high", "crossings", "status")
+_KEYS = (
+    *("index", "layout", "method", "better", "value", "unit", "standard_error", "low", "high", "error_bound"),
+    *("crossings", "status"),
+)
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
@@ -74,6 +77,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             value=found.value if found and known else None,
             standard_error=found.standard_error if found and np.isfinite(found.standard_error) else None,
             interval=found.interval if found and np.isfinite(found.interval).all() else None,
+            error_bound=found.error_bound if found and np.isfinite(found.error_bound) else None,
             crossings=[crossing.value for crossing in found.crossings] if found else [],
             status=status,
             message=message,
@@ -94,6 +98,7 @@ class BudgetAnswer(Answer):
     value: float | None
     standard_error: float | None
     interval: tuple[float, float] | None  # 95 % confidence interval
+    error_bound: float | None = None  # largest relative error, sampling apart
     crossings: list[float]  # all values at which both are equally good
 
 
@@ -157,7 +162,7 @@ class Budgets(Task[BudgetAnswer]):
             better = "" if one.value is None else "below" if one.at_most else "above"
             contents = [
                 *(f"{one.layout}, {one.index}", one.parameter, _verdict(one), one.index, one.layout),
-                *(one.method, better, one.value, one.unit, one.standard_error, low, high),
+                *(one.method, better, one.value, one.unit, one.standard_error, low, high, one.error_bound),
                 *(";".join(map(repr, one.crossings)), one.status_text),
             ]
             rows.append(Row(cells(*contents), status=one.doubt, remark=_remark(one)))
@@ -213,12 +218,18 @@ def _end_of_range(found: BudgetAnswer) -> str:
     """Break-even value as text, or the range if the design is worse again beyond another crossing; empty if none."""
     if found.value is None:
         return ""
-    return range_text(found.value, found.unit, found.standard_error or nan, found.crossings, at_most=found.at_most)
+    error, bound = (nan if known is None else known for known in (found.standard_error, found.error_bound))
+    return range_text(found.value, found.unit, error, bound, found.crossings, at_most=found.at_most)
 
 
-def range_text(value: float, unit: str, error: float, crossings: Sequence[float], *, at_most: bool) -> str:
-    """Range of values on the better side of a break-even value (below it if `at_most`), up to the next crossing."""
-    end = format_quantity(value, unit, error=error)
+def range_text(
+    value: float, unit: str, error: float, bound: float, crossings: Sequence[float], *, at_most: bool
+) -> str:
+    """Range of values on the better side of a break-even value (below it if `at_most`), up to the next crossing.
+
+    The value has the digits that its standard error and its relative error bound allow.
+    """
+    end = format_quantity(value, unit, error=error, bound=bound)
     beyond = [c for c in crossings if (c < value if at_most else c > value)]
     if beyond:
         other = format_quantity(max(beyond) if at_most else min(beyond), unit)

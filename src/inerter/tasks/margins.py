@@ -67,6 +67,7 @@ class BreakEvenMargin:
     value: float | None
     standard_error: float | None
     interval: tuple[float, float] | None
+    error_bound: float | None
     status: str
     message: str
     short: str  # "f up to 414 +- 18 N", "friction up to 390 +- 17 N" of one of a real inerter; empty without a value
@@ -255,6 +256,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
             None,
             None,
             None,
+            None,
             StatusKind.FAILED.value,
             message,
             "",
@@ -264,7 +266,8 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     who = f"{asked.layout} is better than {asked.baseline_layout}"
     if known:
         ends = [crossing.value for crossing in found.crossings]
-        end = range_text(found.value, found.unit, found.standard_error, ends, at_most=element.may_vanish)
+        scatter, bound = found.standard_error, found.error_bound
+        end = range_text(found.value, found.unit, scatter, bound, ends, at_most=element.may_vanish)
         short = f"{trial.brief} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
     else:
@@ -280,6 +283,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         found.value if known else None,
         found.standard_error if isfinite(found.standard_error) else None,
         found.interval if all(map(isfinite, found.interval)) else None,
+        found.error_bound if isfinite(found.error_bound) else None,
         found.status.kind.value,
         found.status.message,
         short,

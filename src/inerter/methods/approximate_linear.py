@@ -19,7 +19,13 @@ from inerter.formatting import format_quantity
 from inerter.indices.definition import Index, IndexDefinition
 from inerter.indices.excitation import error_sources_of, shape_of
 from inerter.methods.averages import interval_of
-from inerter.methods.equivalent_linear import EquivalentLinearModel, equivalent_linear_model, has_play, with_velocities
+from inerter.methods.equivalent_linear import (
+    EquivalentLinearModel,
+    equivalent_linear_model,
+    few_lines,
+    has_play,
+    with_velocities,
+)
 from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.excitation import Excitation, ExcitedInputs, MultisineExcitation, NoiseExcitation
 from inerter.methods.gains import LinearModel, Runs, largest_gain, linear_model
@@ -298,7 +304,8 @@ class ApproximateLinear(FormerMethodNames):
         count = scatter.size
         error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
-        sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *smoothed)
+        lower_peaks = () if known is None else (few_lines(known.peaked),)
+        sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *lower_peaks, *smoothed)
         return Estimate(
             value, definition.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources
         )

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import LinearSystemError, MechanismError
+from inerter.errors import ErrorSource, LinearSystemError, MechanismError
 from inerter.indices.definition import IndexDefinition
 from inerter.methods.equivalent import Equivalent, equivalent, slipping_freely
 from inerter.methods.equivalent_damper import GAUSSIAN
@@ -29,6 +29,7 @@ from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _STUCK = 1e4  # times a typical damper is as good as stuck: more would only cost digits
+_PEAKED = 1.6  # error of a mean square by lines without the peaks of a road, see `ModalShares.over_lines` and 0011
 _DRIFT = 1e-3  # a motion that changes by less over the time asked about is a drift, which `h2` judges
 
 
@@ -131,6 +132,13 @@ class ModalShares:
         worst = int(np.argmax(left.max(axis=0)))
         return float(np.sqrt(min(left.sum(axis=1).max(), 1.0))), complex(self.poles[worst])
 
+    def lower_peaks(self, period: float, change: float) -> float:
+        """Share of a mean square by which it may be off, as lines 1/T Hz apart have lower peaks than a random motion.
+
+        `change` is that of the mean square if all frictions slip twice as fast.
+        """
+        return _PEAKED * change * self.over_lines(period)
+
     def over_lines(self, period: float) -> float:
         """Largest sum of the shares in a mean square, each over the number of lines 1/T Hz apart in its resonance.
 
@@ -141,6 +149,11 @@ class ModalShares:
         lines = np.maximum(-self.poles.real * period, 1.0)
         lines[np.abs(self.poles) * period < _DRIFT] = np.inf
         return float((np.minimum(self.shares, 1.0) / lines).sum(axis=1).max(initial=0.0))
+
+
+def few_lines(share: float) -> ErrorSource:
+    """Error source of an r.m.s. value whose mean square may be off by a `share` (see `ModalShares.lower_peaks`)."""
+    return ErrorSource("few lines in a resonance", 0.5 * share)
 
 
 def modal_shares(system: LinearSystem, norms: Array) -> ModalShares:

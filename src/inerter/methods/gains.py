@@ -37,6 +37,7 @@ class LinearModel:
     status: Status
     missed: float  # share of a mean square that the harmonics of the period may miss
     unlike: float  # by what part of a mean square another motion would make it another design
+    peaked: float  # share of a mean square by which harmonics are off that have lower peaks than a random motion
     pole: complex  # of the motion that outlasts the others
 
     def squares(self, omega: Array) -> Array:
@@ -60,10 +61,12 @@ def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) ->
     system = linear.system(speeds)
     whole = h2(system, linear.problem.pade_order)
     if not whole.status.ok:
-        return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, 0j)
-    left, pole = modal_shares(system, whole.outputs).remaining(period)
-    unlike = linear.unlike(speeds, whole.outputs) if 2.0 * left > _UNSEEN else 0.0
-    return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, pole)
+        return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, math.inf, 0j)
+    modes, unlike = modal_shares(system, whole.outputs), linear.unlike(speeds, whole.outputs)
+    left, pole = modes.remaining(period)
+    return LinearModel(
+        system, whole.outputs, whole.status, 2.0 * left, unlike, modes.lower_peaks(period, unlike), pole
+    )
 
 
 @dataclass(eq=False)

@@ -18,6 +18,7 @@ from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
     equivalent_linear_model,
+    few_lines,
     has_play,
     modal_shares,
     relative_change,
@@ -52,7 +53,6 @@ _FIRST = 2  # roads that decide how long the others must be
 _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
-_PEAKED = 1.6  # error of a mean square by lines without the peaks of a road, see `ModalShares.over_lines` and 0011
 _MOST_PEAKED = 0.01  # of a mean square, without a longer road
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
@@ -185,7 +185,7 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     modes = modal_shares(system, norms)
     (left, pole), (at_last, _) = modes.remaining(excitation.period), modes.remaining(design.longest)
     change = linear.unlike(speeds, norms)
-    peaked = _PEAKED * change * modes.over_lines(excitation.period)
+    peaked = modes.lower_peaks(excitation.period, change)
     share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
     unlike = min(misfit + change, 1.0)  # once the lines tell more
@@ -329,7 +329,7 @@ def _errors(missing: OutOfBandContribution, found: Sequence[RoadRun], outputs: i
         ErrorSource("time step", _STEPPED + jumps),
         steady_state_error([ran.steady for ran in found], _PEAKS),
         ErrorSource("lines of the road", 0.5 * missing.unseen),
-        ErrorSource("few lines in a resonance", 0.5 * missing.peaked),
+        few_lines(missing.peaked),
         ErrorSource("road outside 0.1 to 1000 Hz", 0.5 * missing.beyond),
     ]
 

@@ -214,7 +214,7 @@ def test_what_friction_damps_is_the_same_whatever_the_period(damping, force):
     ),
 )
 def test_the_bound_of_few_lines_holds_what_their_lower_peaks_change(body, wheel, tyre, spring, damping, force, rms):
-    """On a slow excitation, where friction damps the resonance that it excites, a period of 10 s gives 0.3 % too much."""
+    """Where friction damps a resonance on a slow excitation, periods of 10 s give 0.3 % too much."""
     car = QuarterCar(body, wheel, tyre, Spring(spring) | Damper(damping) | Friction(force))
     short, long = (
         evaluate(car, J3, ApproximateLinear(MultisineExcitation(rms, lowest, 10.0), realisations=count))

@@ -295,6 +295,31 @@ def test_the_interval_of_a_quantile_covers(count, share):
     assert inside >= 0.95 * 400 - 3.0 * np.sqrt(400 * 0.05 * 0.95)
 
 
+@pytest.mark.campaign
+def test_a_quantile_of_values_that_scatter_is_no_more_certain_than_they_are():
+    """Where hardly anything varies, a quantile is the value itself, with its errors by random roads."""
+    car = paper_quarter_car(it.Spring(120e3, "k") | it.Damper(4e3, "c") | it.Friction(200.0))
+    method = it.ExpectedValue(2)
+    value, spread = it.evaluate(car, J1, method), {"c": 1e-6}
+    quantile = it.evaluate(car, it.Quantile(J1, scatter_of(spread, "uniform"), samples=16), method)
+    analysed = it.tolerance_analysis(car, J1, method, spread=spread, samples=16).quantile_estimate(0.95)
+    for found in (quantile, analysed):
+        assert found.value == pytest.approx(value.value, rel=1e-5)
+        assert found.standard_error == pytest.approx(value.standard_error, rel=1e-2)
+        assert found.interval == pytest.approx(value.interval, rel=1e-4)
+
+
+def test_a_quantile_on_a_measured_road_has_its_error():
+    car = paper_quarter_car(it.Spring(120e3, "k") | it.Damper(4e3, "c"))
+    heights = np.cumsum(np.random.default_rng(0).normal(0.0, 1e-3, 4096))
+    spectrum = it.road_spectrum(it.Profile(0.1 * np.arange(4096), heights))
+    comfort = it.RideComfort(it.measured_road(spectrum, speed=25.0))
+    value = it.evaluate(car, comfort, NORM)
+    quantile = it.evaluate(car, it.Quantile(comfort, scatter_of({"c": 0.1}, "uniform"), samples=16), NORM)
+    assert value.error_bound > 1e-3
+    assert quantile.error_bound >= value.error_bound
+
+
 @pytest.mark.parametrize("seed", sampled(range(3), kept=1))
 def test_a_robust_quantile_is_that_of_its_design(seed):
     """By a sample of its own: within its interval of that by 4096 samples, not below as that of the search."""

@@ -64,9 +64,7 @@ def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) ->
         return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, math.inf, 0j)
     modes, unlike = modal_shares(system, whole.outputs), linear.unlike(speeds, whole.outputs)
     left, pole = modes.remaining(period)
-    return LinearModel(
-        system, whole.outputs, whole.status, 2.0 * left, unlike, modes.lower_peaks(period, unlike), pole
-    )
+    return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, modes.lower_peaks(period, unlike), pole)
 
 
 @dataclass(eq=False)

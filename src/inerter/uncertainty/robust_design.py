@@ -32,7 +32,7 @@ from inerter.uncertainty.distributions import (
     source_values,
     with_free_scatter,
 )
-from inerter.uncertainty.tolerance import evaluate_sample, quantile_error, rank_weights
+from inerter.uncertainty.tolerance import evaluate_sample, quantile_error, rank_weights, with_scatter_of_values
 from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
@@ -107,8 +107,10 @@ class Quantile(OfIndex):
             status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs of the sample have no reliable value")
             return Estimate(np.nan, self.unit, status)
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
-        error, interval = quantile_error(values, self.share)
-        sources = (ErrorSource("values of the sample", getattr(method, "promise", np.nan)),)
+        here = estimate_of(vehicle, self.index, method)
+        error, interval = with_scatter_of_values(value, quantile_error(values, self.share), here)
+        bound = float(np.maximum(getattr(method, "promise", np.nan), here.error_bound))  # also by a measured road
+        sources = (ErrorSource("values of the sample", bound),)
         status = scatter_left_out(vehicle, method, self.scatter)
         return Estimate(value, self.unit, status, error, interval, values.size, error_sources=sources)
 

@@ -89,14 +89,14 @@ class Tolerance:
         return float(np.quantile(self.values, share))
 
     def quantile_estimate(self, share: float) -> Estimate:
-        """Quantile with its standard error and 95 % confidence interval (`quantile_error`).
+        """Quantile with its standard error and 95 % confidence interval, by the sample and by scatter of its values.
 
         Raises `DesignError` unless the share is between 0 and 1.
         """
         value = self.quantile(share)
         if not np.isfinite(value):
             return Estimate(value, self.unit, self.status)
-        error, interval = quantile_error(self.values, share)
+        error, interval = with_scatter_of_values(value, quantile_error(self.values, share), self.nominal)
         return Estimate(value, self.unit, self.status, error, interval, self.values.size)
 
 
@@ -232,6 +232,24 @@ def quantile_error(values: Array, share: float) -> tuple[float, tuple[float, flo
     low, high = (scipy.stats.binom.ppf(p, count, share) for p in (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE))
     interval = float(ordered[max(int(low) - 1, 0)]), float(ordered[min(int(high), count - 1)])
     return (interval[1] - interval[0]) / (2.0 * float(scipy.special.ndtri(0.5 + 0.5 * CONFIDENCE))), interval
+
+
+def with_scatter_of_values(
+    value: float, of_sample: tuple[float, tuple[float, float]], nominal: Estimate
+) -> tuple[float, tuple[float, float]]:
+    """Standard error and interval of a quantile, with those of the values themselves added as squares.
+
+    All values of a sample have the same random inputs, such as roads, so that they are off together: by the part by
+    which the one without scatter, `nominal`, is.
+    """
+    if not nominal.standard_error or nominal.interval is None:
+        return of_sample
+    error, (low, high) = of_sample
+    scale, (below, above) = value / nominal.value, nominal.interval
+    return float(np.hypot(error, scale * nominal.standard_error)), (
+        value - float(np.hypot(value - low, scale * (nominal.value - below))),
+        value + float(np.hypot(high - value, scale * (above - nominal.value))),
+    )
 
 
 def _effects(both: Array, mixed: Array) -> tuple[Array, Array]:

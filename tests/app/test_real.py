@@ -181,7 +181,7 @@ def test_wrong_requests_of_the_command_line(
     assert call(["serve", "--no-browser"]) == 2
 
 
-def test_without_the_extra_there_is_a_sentence(tmp_path: Path) -> None:
+def test_without_the_extra_there_is_a_sentence() -> None:
     program = (
         "import sys; sys.modules['uvicorn'] = None; sys.modules['starlette'] = None; import inerter as it\n"
         "try: it.serve(browser=False)\nexcept it.InerterError as error: print(error)"

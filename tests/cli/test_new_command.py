@@ -36,7 +36,7 @@ def test_a_start_for_every_vehicle(model, tmp_path, monkeypatch, capsys):
     assert (tmp_path / f"{model}.toml").read_text(encoding="utf-8") == text
 
 
-def test_what_is_a_remark_can_be_taken_in(tmp_path):
+def test_what_is_a_remark_can_be_taken_in():
     """Every key that is only told is one that the file may have."""
     text = starting_text("quarter-car")
     told = re.findall(r"^# (\w+ = .*)$", text, re.MULTILINE)

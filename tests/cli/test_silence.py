@@ -136,7 +136,7 @@ def fail_within(name: str) -> None:
         raise ZeroDivisionError
 
 
-def test_designs_that_have_ended_are_not_told_to_be_under_way(capsys: pytest.CaptureFixture[str]) -> None:
+def test_designs_that_have_ended_are_not_told_to_be_under_way() -> None:
     own = Pace({"S1": 1, "S2": 1}, ("J1",), 1)
     with progress(pace=own) as shown:
         shown.cases(0, 2, None, 0)

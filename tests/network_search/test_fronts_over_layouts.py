@@ -100,7 +100,7 @@ def _all_tasks(left, level, bounds):
     return [fronts.FrontTask(one, left[one].parameters, tuple(range(level.size))) for one in sorted(left)]
 
 
-def test_whatever_shares_the_work_the_front_is_the_same(monkeypatch):
+def test_whatever_shares_the_work_the_front_is_the_same():
     with ProcessPoolExecutor(2) as executor:
         shared = it.search(car(3), (COMFORT, LOAD), NORM, executor=executor)
     assert facts(shared) == facts(found(3))

@@ -187,7 +187,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
 
 
-def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor, tmp_path: Path) -> None:
+def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor) -> None:
     """However long the text of a network is, all of it is seen, and the mark is under what is wrong."""
     page = visitor.page
     page.fill("#network-text", " | ".join(["(k - c)"] * 40 + ["c - - k"] + ["k"] * 10))

@@ -105,7 +105,7 @@ def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tm
     assert visitor.text == before
 
 
-def test_names_with_markup_are_text(visitor: Any, tmp_path: Path) -> None:
+def test_names_with_markup_are_text(visitor: Any) -> None:
     page = visitor.page
     name = "<img src=x onerror=alert(1)>"
     page.fill("input.title", name)

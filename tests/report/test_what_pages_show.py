@@ -119,7 +119,7 @@ def count_of(text):
     return int(found[1]) if found else 0
 
 
-def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study, tmp_path):
+def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study):
     data = designs()
     missed = np.ones(data["status"].shape, dtype=bool)
     results = limited(data, np.zeros((*missed.shape, 2), dtype=bool), missed)

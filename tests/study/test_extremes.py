@@ -36,7 +36,7 @@ def test_a_valid_extreme_ends_in_time(tmp_path: Path, capsys: pytest.CaptureFixt
     assert what_is_wrong(code, found.out, found.err, time.process_time() - begun, LIMIT) == [], case.text
 
 
-def test_bases_are_valid_and_their_quantities_are_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_bases_are_valid_and_their_quantities_are_changed() -> None:
     """The generator changes what it means to: bounds stay in order, motions keep a whole number of steps."""
     for seed, name in enumerate(BASES):
         case = extreme(seed)

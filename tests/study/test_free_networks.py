@@ -92,7 +92,7 @@ def test_a_run_refuses_it_and_names_the_search(tmp_path: Path) -> None:
         check_study(study)
 
 
-def test_schema_and_drafts_know_it(tmp_path: Path) -> None:
+def test_schema_and_drafts_know_it() -> None:
     entries = study_schema()["properties"]["elements"]["additionalProperties"]["anyOf"]
     assert any("network" in entry.get("properties", {}) for entry in entries)
     draft = Draft({"elements": {"any": {"network": 2, "springs": {"from": "1 N/m", "to": "2 N/m"}}}, "layouts": {}})

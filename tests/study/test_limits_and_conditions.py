@@ -470,7 +470,7 @@ def test_a_budget_holds_over_conditions_of_the_vehicle(load: Callable[..., Study
     ],
 )
 def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
-    load: Callable[..., Study], tmp_path: Path, model: str, limit: str, value: str, outputs: dict[str, str]
+    tmp_path: Path, model: str, limit: str, value: str, outputs: dict[str, str]
 ) -> None:
     """The value that is shown is of the part that is named, by an index of that output alone; a total is larger."""
     car = "\n".join(f'{key} = "{number!r} {unit}"' for key, (number, unit) in CARS[model].items())

@@ -59,7 +59,7 @@ def test_valid_extremes_run_to_their_end(tmp_path, capsys, seed):
     assert (tmp_path / "results" / "report.html").exists()
 
 
-def test_a_new_file_replaces_its_own_kind_alone(tmp_path, capsys):
+def test_a_new_file_replaces_its_own_kind_alone(tmp_path):
     path = tmp_path / "car.toml"
     assert call(["new", "-o", str(path)]) == 0
     first = path.read_bytes()

@@ -25,7 +25,6 @@ from inerter.simulation.simulate import simulate
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 _STEP = 2e-4  # [s] longest of the simulation
 _ABOVE = 1.25  # times the highest frequency of the response: cut-off frequency of the displacement
 _HIGHEST = 0.8  # of half the rate: no filter is applied above that

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.formatting import format_number, format_range
@@ -19,7 +18,6 @@ from inerter.systems.input_paths import InputPath
 from inerter.validation import check_positive
 from inerter.vehicle.mechanism import Mechanism
 
-Array = NDArray[np.float64]
 DEVIATION = 5e-3  # of the density from that of the line
 _BEYOND = (10.0, 20.0, 40.0)  # how much further than the line the filter follows its slope, as a factor at each end
 _MOST = 24  # poles

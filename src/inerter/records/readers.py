@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
-from numpy.typing import NDArray
 
 from inerter.errors import RecordError
 from inerter.formatting import format_quantity
@@ -24,7 +23,6 @@ from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
 from inerter.validation import is_number
 
-Vector = NDArray[np.float64]
 Opener = Callable[[str, str], AbstractContextManager[Contents]]
 FORMATS: dict[str, tuple[str, Opener]] = {
     ".csv": ("text", tables.open_channels),

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from inerter.errors import RecordError
-from inerter.files.common.entries import positive_in
 from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.suggest import nearest
 from inerter.formatting import format_quantity
@@ -51,11 +50,6 @@ def units(value: Any) -> dict[str, str]:
         if not isinstance(unit, str) or not unit.strip() or unit == PURE or not _is_length(unit):
             raise EntryError(got=f"{kind} = {quote_value(unit)}", expected=f"a unit of length, as in {UNITS_EXAMPLE}")
     return dict(value)
-
-
-def spacing(value: Any) -> float:
-    """The distance between rows [m]."""
-    return positive_in(value, "m")
 
 
 def read(

@@ -24,7 +24,8 @@ def parts_of_document(document: Document) -> dict[str, Any]:
     free_networks = {name for name, entry in entries.items() if is_free_network(entry)}
     return {
         "networks": [
-            {"path": list(keys), "text": text, **_network(text, known)} for keys, text in draft.networks.items()
+            {"path": list(keys), "text": text, **parse_network(text, None), **parse_network(text, known)}
+            for keys, text in draft.networks.items()
         ],
         "layouts": {
             name: {
@@ -43,11 +44,6 @@ def parts_of_document(document: Document) -> dict[str, Any]:
         },
         "numbers": [_number(number) for number in draft.numbers],
     }
-
-
-def _network(text: str, known: list[str]) -> dict[str, Any]:
-    """Tree and names of a network, with the place and sentence of what is wrong with it, if anything."""
-    return {**parse_network(text, None), **parse_network(text, known)}
 
 
 def _number(written: WrittenNumber) -> dict[str, Any]:

@@ -509,7 +509,7 @@ def call(arguments: list[str]) -> int:
         tell(error)
         return INTERRUPTED
     except CycloptsError as error:
-        return _fail(StudyError(f"{error}\nTry: {' '.join(('inerter', *_command(arguments)))} --help"))
+        return _fail(StudyError(f"{error}\nTry: {' '.join(('inerter', *app.parse_commands(arguments)[0]))} --help"))
     except InerterError as error:
         return _fail(error)
     except OSError as error:
@@ -519,11 +519,6 @@ def call(arguments: list[str]) -> int:
             tell()
             return INTERRUPTED
         raise
-
-
-def _command(arguments: list[str]) -> tuple[str, ...]:
-    """Command among some arguments; empty without one."""
-    return app.parse_commands(arguments)[0]
 
 
 def _writes(arguments: list[str]) -> bool:

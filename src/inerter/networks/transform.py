@@ -42,7 +42,10 @@ def expand_elements(network: Network, view: Callable[[Element], Network]) -> Net
             return element
         if isinstance(seen, Element):
             return expand_elements(seen if seen.name is not None else _with_name(seen, element.label), view)
-        named = map_elements(seen, lambda part: _named_after(element.label, part))
+        own = (None, element.label)
+        named = map_elements(
+            seen, lambda part: _with_name(part, f"{element.label}_{part.symbol}") if part.name in own else part
+        )
         assert isinstance(named, CombinedNetwork)
         return expand_elements(replace(named, name=element.label), view)  # type: ignore[type-var]
 
@@ -57,10 +60,6 @@ def to_analysis(element: Element) -> Network:
 def to_simulation(element: Element) -> Network:
     """Network that replaces an element in simulation; raises `DesignError` if that depends on a free value."""
     return element.as_piecewise()
-
-
-def _named_after(label: str, part: Element) -> Element:
-    return _with_name(part, f"{label}_{part.symbol}") if part.name in (None, label) else part
 
 
 def _with_name(part: Element, name: str) -> Element:

@@ -249,7 +249,7 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
     best = f"{_format_equal_layouts(names)}, {format_percent_size(largest)} better at {where}"
     return (
         f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
-        f"improvement over the sweep lies {_format_range(least, largest)}."
+        f"improvement over the sweep lies between {format_percent_size(least)} and {format_percent_size(largest)}."
     )
 
 
@@ -263,7 +263,3 @@ def _no_best_clause(results: xr.Dataset, index: str) -> str:
     """Clause on the reason why no layout is best."""
     missed = bool(infeasible(results.sel(index=index)).all())
     return "no layout satisfies the constraints" if missed else "no layout has a finite value"
-
-
-def _format_range(least: float, largest: float) -> str:
-    return "between " + " and ".join(format_percent_size(value) for value in (least, largest))

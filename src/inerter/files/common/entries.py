@@ -262,7 +262,12 @@ def word(what: str, known: Collection[str]) -> Codec:
 
 def some_of(what: str, known: Collection[str]) -> Codec:
     """A list of at least one of `known`, none of them twice."""
-    return _list_of(one_of(what, known), lambda: next(iter(known)), lambda: words_schema(known))
+    check = one_of(what, known)
+    return Scalar(
+        lambda values: _check_list(values, check, lambda: next(iter(known))),
+        lambda: list_schema(words_schema(known)),
+        list_or_none,
+    )
 
 
 @dataclass(frozen=True)
@@ -294,10 +299,6 @@ def some_names(example: str) -> Codec:
         list_or_none,
         lambda raw, names: [_renamed_element(one, names) for one in raw] if isinstance(raw, list) else raw,
     )
-
-
-def _list_of(one: Callable[[Any], str], example: Callable[[], str], schema: Callable[[], dict[str, Any]]) -> Codec:
-    return Scalar(lambda values: _check_list(values, one, example), lambda: list_schema(schema()), list_or_none)
 
 
 def list_or_none(values: Collection[Any]) -> list[Any] | None:

@@ -130,7 +130,7 @@ def as_toml(tables: Mapping[str, Any]) -> str:
 
 def as_line(key: str, value: object) -> str:
     """A key and its value as TOML."""
-    return f"{_key(key)} = {_toml(value)}"
+    return f"{key if _BARE_KEY.fullmatch(key) else _toml(key)} = {_toml(value)}"
 
 
 def _toml(value: object) -> str:
@@ -145,7 +145,3 @@ def _toml(value: object) -> str:
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")  # JSON leaves DEL, TOML may not
         case _:
             return str(value)
-
-
-def _key(key: str) -> str:
-    return key if _BARE_KEY.fullmatch(key) else _toml(key)

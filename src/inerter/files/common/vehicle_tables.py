@@ -92,10 +92,6 @@ def part_name(name: Any) -> str:
     return str(name)
 
 
-def _levers(port: Mapping[str, float]) -> dict[str, float | str]:
-    return {n: f"{float(v)!r} m" if isinstance(v, Length) else float(v) for n, v in port.items()}
-
-
 @dataclass(frozen=True)
 class InertiaCodec(Codec):
     """A mass, or the moment of inertia of an angle, which may be `free`."""
@@ -166,7 +162,7 @@ class PortCodec(NamesCodec):
 
     def dump(self, value: Mapping[str, float]) -> dict[str, Any]:
         """The levers by their names."""
-        return _levers(value)
+        return {n: f"{float(v)!r} m" if isinstance(v, Length) else float(v) for n, v in value.items()}
 
 
 @dataclass(frozen=True)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from inerter.files.common.codec import TableCodec, key, keyed_dataclass, section, table_of
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import TEXT, YES_OR_NO, one_of, positive, whole, word
@@ -44,10 +42,6 @@ class SimulationSettings:
     every: int = key(whole(1, 10**9), "Number of steps per stored sample.", "every = 10", default=1)
 
 
-def _model(value: Any) -> str:
-    return one_of("a vehicle model", models())(value)
-
-
 @cache_until_registration
 def simulation_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections."""
@@ -57,7 +51,7 @@ def simulation_codec() -> TableCodec:
             section("title", TEXT, default=None),
             section(
                 "vehicle",
-                vehicle_codec(models(), _model, free=False),
+                vehicle_codec(models(), one_of("a vehicle model", models()), free=False),
                 example=f"a section [vehicle] with model = {', '.join(others)} or {last}",
             ),
             section(

@@ -230,7 +230,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         variables[name] = (dims, array, {"long_name": long_name})
     coords: dict[str, Any] = {
         "layout": list(study.layouts),
-        "elements": ("layout", [_count(study, layout) for layout in study.layouts]),
+        "elements": ("layout", [len(study.design(layout).mechanism().strut_elements()) for layout in study.layouts]),
         "index": list(study.indices),
         "method": list(study.evaluate),
         "method_words": ("method", list(method_labels(study).values())),
@@ -261,11 +261,6 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     for name in PERCENT & set(variables):
         data[name].attrs["units"] = "percent"
     return data
-
-
-def _count(study: Study, layout: str) -> int:
-    """Number of elements in the struts of a layout."""
-    return len(study.design(layout).mechanism().strut_elements())
 
 
 def is_uncertain(study: Study) -> bool:

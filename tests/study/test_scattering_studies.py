@@ -18,7 +18,7 @@ from inerter.files.study.tasks import TaskResults
 from inerter.report.page import report
 from inerter.report.study_data import as_text
 from inerter.report.text import table_lines
-from inerter.tasks.tolerances import Tolerances
+from inerter.tasks.tolerances import ToleranceAnswer, Tolerances
 
 FREE = """k = "30 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
@@ -35,6 +35,24 @@ def study_of(folder: Path, settings: str, elements: str = FREE) -> Study:
 def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
     folder = tmp_path_factory.mktemp("tolerance")
     return run_study(study_of(folder, ASK + 'tolerance = { c = "10 %", elements.b = 0.05 }\n'), folder / "out")
+
+
+@pytest.mark.parametrize(
+    ("error", "bound", "told"),
+    [
+        (None, 1e-12, ["2.509 m/s^2", "0.04567 m/s^2", "2.588 m/s^2"]),
+        (None, 0.02, ["2.5 m/s^2", "0.046 m/s^2", "2.6 m/s^2"]),
+        (0.0123, 1e-6, ["2.509 +- 0.012 m/s^2", "0.04567 +- 0.00022 m/s^2", "2.588 +- 0.013 m/s^2"]),
+        (0.0, None, ["2.509 m/s^2", "0.04567 m/s^2", "2.588 m/s^2"]),
+    ],
+)
+def test_values_have_the_digits_that_their_errors_allow(error: float, bound: float, told: list[str]) -> None:
+    numbers = {"nominal": 2.5094, "standard_deviation": 0.04567, "quantile": 2.5876}
+    answer = ToleranceAnswer(
+        layout="S1", index="J1", method="m", unit="m/s^2", numbers=numbers, effects={}, standard_error=error,
+        error_bound=bound, status="ok", message="",
+    )  # fmt: skip
+    assert [str(answer.quantity(name)) for name in numbers] == told
 
 
 def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:

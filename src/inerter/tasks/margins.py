@@ -397,16 +397,19 @@ def _analyse(asked: MarginRequest, spread: Mapping[str, float], method: str, *, 
         message=status.message,
         sentence="",
     )
-    return replace(made, sentence=_scatter_sentence(asked, made))
+    return replace(made, sentence=_scatter_sentence(asked, made, found.nominal.error_bound))
 
 
-def _scatter_sentence(asked: MarginRequest, found: ScatterMargin) -> str:
-    """Sentence on the worst case and the 95th percentile, compared with the baseline at its nominal values."""
+def _scatter_sentence(asked: MarginRequest, found: ScatterMargin, bound: float) -> str:
+    """Sentence on the worst case and the 95th percentile, compared with the baseline at its nominal values.
+
+    `bound` is the largest relative error of the values.
+    """
     parts = format_list([f"{name} +- {format_share(part)}" for name, part in found.spread.items()])
     given = f"Tolerances {'(assumed, since the study has none) ' if found.is_assumed else ''}of {parts}"
     if not isfinite(found.worst):
         return f"{given}: the distribution of {asked.words} is not computed ({found.message.rstrip('.')})."
-    quantile = format_quantity(found.quantiles[str(SHARES[-1])], found.unit)
+    quantile = format_quantity(found.quantiles[str(SHARES[-1])], found.unit, bound=bound)
     above = format_percent_size(found.worst_percent)
     compared = Improvement(found.worst_improvement_percent)
     versus = "as good as" if compared.is_equal else f"{compared.words} than"

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from inerter.decision.results import improvement_bound
 from inerter.errors import StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
-from inerter.formatting import format_decimals, format_number, format_share
+from inerter.formatting import format_decimals, format_number, format_percent_size, format_share
 from inerter.methods.registry import with_decisive_method
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import tolerance_analysis
@@ -59,6 +60,8 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             unit=study.unit(self.index),
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
             effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
+            standard_error=found.nominal.standard_error,
+            error_bound=found.nominal.error_bound if np.isfinite(found.nominal.error_bound) else None,
             **with_decisive_method(found.status, method).to_json(),
         )
 
@@ -86,10 +89,22 @@ class ToleranceAnswer(Answer):
     unit: str
     numbers: dict[str, float]  # nominal, mean, standard_deviation, quantile, worst
     effects: dict[str, list[float]]  # by what scatters: its part of the variance by itself, and in all
+    standard_error: float | None = None  # of the nominal value, by random inputs that all values have in common
+    error_bound: float | None = None  # of the nominal value, relative, sampling apart
 
     def quantity(self, name: str) -> Quantity | None:
-        """A number of the distribution with its unit; None if it is not known."""
-        return Quantity(self.numbers[name], self.unit) if name in self.numbers else None
+        """A number of the distribution with its unit and the errors of the values; None if it is not known.
+
+        All values are off by the same part where random inputs make it, and by as much as the nominal one otherwise.
+        """
+        if name not in self.numbers:
+            return None
+        value, nominal = self.numbers[name], abs(self.numbers["nominal"])
+        if not value or not nominal or not np.isfinite(value / nominal):
+            return Quantity(value, self.unit)
+        scatter = np.nan if self.standard_error is None else self.standard_error * abs(value) / nominal
+        bound = np.nan if self.error_bound is None else self.error_bound * nominal / abs(value)
+        return Quantity(value, self.unit, error=scatter, bound=bound)
 
 
 class Tolerances(Task[ToleranceAnswer]):
@@ -124,7 +139,7 @@ class Tolerances(Task[ToleranceAnswer]):
             Column("Design"),
             *(Column(key=key) for key in ("layout", "index", "method")),
             *(Column(_HEADINGS.get(name, ""), _KEYS.get(name, name)) for name in _NUMBERS),
-            Column(key="unit"),
+            *(Column(key=key) for key in ("unit", "standard_error", "error_bound")),
             *(Column(key=f"{kind} effect of {name}") for name in names for kind in ("main", "total")),
             Column("Due to", prose=True),
             Column(key="status"),
@@ -138,7 +153,7 @@ class Tolerances(Task[ToleranceAnswer]):
                 one.index,
                 one.method,
                 *map(one.quantity, _NUMBERS),
-                one.unit,
+                *(one.unit, one.standard_error, one.error_bound),
                 *effects,
             ]
             rows.append(Row(cells(*contents, _due(one), one.status_text), status=one.doubt))
@@ -175,8 +190,10 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
     base = next((one for one in known if one.layout == baseline), None)
     compared = ""
     if base is not None and base is not best and base.numbers["quantile"] > 0.0:
-        part = 1.0 - best.numbers["quantile"] / base.numbers["quantile"]
-        compared = f", {format_decimals(100.0 * part, 1)} % better than {base.layout} with its tolerances"
+        own, other = best.numbers["quantile"], base.numbers["quantile"]
+        bound = improvement_bound(own, other, best.error_bound or 0.0, base.error_bound or 0.0)
+        better = format_percent_size(100.0 * (1.0 - own / other), bound=bound)
+        compared = f", {better} better than {base.layout} with its tolerances"
     elif base is best and len(known) > 1:
         compared = "; no other layout is better than this baseline"
     neglect = neglect_clause(study, best.method)

@@ -96,6 +96,35 @@ def test_velocities_and_displacements_of_a_massless_coordinate_by_the_balance_of
     np.testing.assert_allclose(d, s, rtol=1e-9)
 
 
+BETWEEN_SPRINGS = [
+    Spring(3e4),
+    Spring(3e4) | Spring(8e4) - Inerter(5.0),
+    Spring(3e4) | Spring(8e4) - Damper(700.0),
+    Spring(3e4) | Spring(8e4) - Inerter(5.0) - Damper(700.0),
+    Spring(3e4) | Bridge(Spring(2e5), Inerter(3.0), Spring(1e4), Inerter(2.0), Spring(1e5)),
+]
+
+
+@pytest.mark.parametrize("upper", BETWEEN_SPRINGS)
+def test_every_output_of_a_node_between_springs_by_nodal_equations(upper):
+    node = {"node": 1.0}
+    car = mechanism([Strut("upper", upper, TOP, node), Strut("lower", Spring(9e4), node, BOTTOM)], "node")
+    omega = np.geomspace(0.5, 1e3, 12)
+    nodal = Nodal(car, omega)
+    for form in ("state-space", "descriptor"):
+        system = it.named_system(car, form=form)
+        assert len({state.name for state in system.states}) == system.A.shape[0]
+        assert "node_velocity" in [output.name for output in system.outputs]
+        expected = np.array([nodal.response(output.name, "road") for output in system.outputs]).T
+        size = np.abs(expected).max(axis=0)
+        difference = np.abs(system.response(omega)[:, :, 0] - expected) / size
+        assert difference.max() < 1e-10
+        for i, output in enumerate(system.outputs):  # a state that is called like an output is that output
+            own = np.array([float(state.name == output.name) for state in system.states])
+            if own.any():
+                np.testing.assert_allclose(system.C[i], own, rtol=0.0, atol=1e-12)
+
+
 SWITCHING = [
     (Spring(1e4), Damper(2e3), Inerter(50.0), Damper(1e3), Spring(2e4) | Friction(20.0)),
     (Spring(1e4) | Friction(30.0), Damper(2e3), Damper(800.0), Damper(1e3), Spring(2e4) - Gap(2e-4)),

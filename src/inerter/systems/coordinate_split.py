@@ -115,10 +115,26 @@ class Frame:
         """Rows of zeros."""
         return np.zeros(self.unknowns), np.zeros(self.states), np.zeros(len(self.inputs))
 
+    def motion_names(self, part: str, what: str) -> list[str]:
+        """Names of the motions of a part of the split (R, U, Y or Z), such as `wheel_velocity`.
+
+        A motion is called after a node if that node has no other; else it is `<node>_partial_<what>`, one of the
+        motions that a node such as one between springs and inerters has.
+        """
+        split = self.split
+        alone = np.count_nonzero(np.hstack([split.R, split.U, split.Y, split.Z]), axis=1) == 1
+        names = []
+        for column in getattr(split, part).T:
+            own = alone & (column == 1.0)
+            node = self.graph.nodes[int(np.argmax(own if own.any() else np.abs(column)))]
+            names.append(f"{node}_{what}" if own.any() else f"{node}_partial_{what}")
+        return names
+
     def velocity(self, nodes: Matrix, roads: Matrix | None = None) -> RowBlocks:
         """The velocity of a combination of nodes and roads."""
         (eta, x, u), at = self.blank(), self.slots
         x[at.a], eta[at.u0], eta[at.y], settling = self.split.rate(nodes)
+        assert at.settles or not np.any(settling)  # `split` is told which outputs are wanted
         if at.settles:
             eta[at.z1] = settling
         if roads is not None and roads.size:

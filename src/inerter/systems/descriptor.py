@@ -37,7 +37,7 @@ from inerter.systems.incidence import incidence_rows, of_law
 from inerter.systems.lever_arms import BranchRows
 from inerter.systems.linear import ExtendedMatrices, LinearSystem, Origin
 from inerter.systems.observe import StackedOutput, observe, observed_by_default
-from inerter.systems.outputs import Output, check_inputs, force_of, input_names
+from inerter.systems.outputs import Output, check_inputs, force_of, input_names, main_outputs
 from inerter.systems.polynomials import Polynomial, TransferFunctions
 from inerter.systems.structure import Structure, once_per_structure, structure_of
 from inerter.systems.transfer import transfer_functions
@@ -229,7 +229,7 @@ def _describe(mechanism: Mechanism, graph: Graph, inputs: Names, outputs: Names)
     chosen = names if inputs is None else list(inputs)
     check_inputs(mechanism, chosen, LinearSystemError, beside)
     ordered = [name for name in dict.fromkeys((*names, *beside)) if name in chosen]
-    frame = split(mechanism, graph, ordered, outputs or ())
+    frame = split(mechanism, graph, ordered, main_outputs(mechanism) if outputs is None else outputs)
     balanced = balance(frame)
     observed = [observe(frame, name) for name in (observed_by_default(frame) if outputs is None else outputs)]
     return _join_arrays(frame, balanced, observed, chosen)
@@ -385,7 +385,7 @@ def _output_stacks(
 
 
 def _state_names(frame: Frame, extra: Sequence[StackedOutput]) -> tuple[str, ...]:
-    velocities = [f"{frame.graph.nodes[int(np.argmax(column))]}_velocity" for column in frame.split.R.T]
+    velocities = frame.motion_names("R", "velocity")
     elongations = []
     for row in frame.split.P:
         labels = [frame.springs[i].label for i in np.flatnonzero(row)]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.systems.coordinate_split import Frame, split
+from inerter.systems.coordinate_split import split
 from inerter.systems.descriptor import Descriptor
 from inerter.systems.graph import linear_graph
 
@@ -37,24 +37,20 @@ def unknowns(descriptor: Descriptor) -> tuple[tuple[str, str], ...]:
     frame = split(mechanism, linear_graph(mechanism), ordered, descriptor.outputs)
     found = frame.split
     springs = [branch.label for branch in frame.springs]
-    names = [*_motions(found.R, frame, "acceleration"), *_motions(found.U, frame, "acceleration")]
-    names += _motions(found.Y, frame, "velocity")
+    names = [*frame.motion_names("R", "acceleration"), *frame.motion_names("U", "acceleration")]
+    names += frame.motion_names("Y", "velocity")
     names += [f"{springs[int(np.argmax(np.abs(column)))]}_elongation" for column in found.Z_e.T]
-    names += _motions(found.U, frame, "velocity")
+    names += frame.motion_names("U", "velocity")
     if frame.slots.settles:
-        names += _motions(found.Z, frame, "velocity")
+        names += frame.motion_names("Z", "velocity")
     units = {"acceleration": "m/s^2", "velocity": "m/s", "elongation": "m"}
     angles = _angles(descriptor)
     told = []
     for name in _number_unknowns(names, descriptor.states):
-        node, _, what = name.rpartition("_")
-        what = what.rstrip("0123456789")
+        before, _, what = name.rpartition("_")
+        node, what = _named_node(before), what.rstrip("0123456789")
         told.append((name, units[what].replace("m", "rad", 1) if node in angles else units[what]))
     return tuple(told)
-
-
-def _motions(columns: Matrix, frame: Frame, what: str) -> list[str]:
-    return [f"{frame.graph.nodes[int(np.argmax(np.abs(column)))]}_{what}" for column in columns.T]
 
 
 def _number_unknowns(names: Sequence[str], taken: Sequence[str]) -> list[str]:
@@ -75,6 +71,12 @@ def _angles(descriptor: Descriptor) -> frozenset[str]:
 
 def _node_of(name: str, descriptor: Descriptor) -> str | None:
     """The node of which a state is the velocity; None for an elongation."""
-    node, _, what = name.rpartition("_")
+    before, _, what = name.rpartition("_")
+    node = _named_node(before)
     is_velocity = what.rstrip("0123456789") == "velocity"
     return node if is_velocity and node in descriptor.model.graph.nodes else None
+
+
+def _named_node(before: str) -> str:
+    """The node in a name, before `_velocity` or `_acceleration`."""
+    return before.removesuffix("_partial")

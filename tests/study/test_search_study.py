@@ -20,6 +20,7 @@ from inerter.files.study import searching
 from inerter.files.study.checking import check_lines, search_plans
 from inerter.files.study.running import part_results
 from inerter.files.study.search_parts import GroupResult, NetworkGroup, RealPart, RealResult
+from inerter.files.study.search_tables import real_networks_table
 from inerter.files.study.searching import StudySearch, search_study
 from inerter.files.study.study import Study
 from inerter.networks.enumeration import enumerate_networks
@@ -266,6 +267,22 @@ def test_real_inerters_are_in_report_and_journal(real: StudySearch) -> None:
     before = (real.folder / "search_real_inerters.csv").read_bytes()
     assert search_study(real.study, real.folder, resume=True).computed == 0
     assert (real.folder / "search_real_inerters.csv").read_bytes() == before
+
+
+def test_gains_with_real_inerters_have_the_digits_that_their_errors_allow(real: StudySearch) -> None:
+    (one,) = real.searches
+    own, base = (
+        next(each for each in one.real if each.method == "statistical-linearisation" and bool(each.network) is is_own)
+        for is_own in (True, False)
+    )
+    own = replace(own, value=2.01234, kept=2.23456, error_bound=0.02, kept_bound=0.02, kept_doubt="inaccurate: why")
+    changed = replace(one, real=(own, replace(base, value=2.51234, error_bound=0.0)))
+    (row,) = real_networks_table(real.study, changed).rows
+    told = [str(cell.content) for cell in row.cells]
+    assert "2.2 m/s^2" in told
+    assert "2.0 m/s^2" in told
+    assert "+20 %" in told
+    assert row.status == "same values: inaccurate: why"
 
 
 def test_results_are_in_the_order_of_the_study_whatever_is_ready_first(

@@ -13,10 +13,11 @@ from inerter.app.designs import Design, baseline_of, designs_of, one_design, pro
 from inerter.app.index_values import DesignLimit, limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound
+from inerter.decision.results import DesignResult, Improvement, IndexResult
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, typeset
 from inerter.methods.compare import Comparison
+from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
 from inerter.tasks.margins import margins as find_margins

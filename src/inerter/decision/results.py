@@ -42,13 +42,6 @@ def percent_below(value: float, base: float) -> float:
     return 100.0 * (1.0 - value / base) if isfinite(value) and isfinite(base) and base else nan
 
 
-def improvement_bound(value: float, base: float, bound: float, base_bound: float) -> float:
-    """Largest error of an improvement [%], of values with these relative errors; nan where none is known."""
-    if not isfinite(value) or not base or not base_bound < 1.0:
-        return nan
-    return 100.0 * abs(value / base) * (bound + base_bound) / (1.0 - base_bound)
-
-
 @dataclass(frozen=True)
 class IndexResult:
     """Value of an index of one design, and its improvement over the baseline; None if they cannot be compared."""

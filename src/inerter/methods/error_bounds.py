@@ -63,3 +63,10 @@ def of_worst(parts: Sequence[Estimate], value: float) -> tuple[ErrorSource, ...]
     widest = max(parts, key=lambda part: abs(part.value) * part.error_bound)
     share = abs(widest.value / value)
     return tuple(replace(source, bound=share * source.bound) for source in widest.error_sources)
+
+
+def improvement_bound(value: float, base: float, bound: float, base_bound: float) -> float:
+    """Largest error of an improvement [%], of values with these relative errors; nan where none is known."""
+    if not math.isfinite(value) or not base or not base_bound < 1.0:
+        return math.nan
+    return 100.0 * abs(value / base) * (bound + base_bound) / (1.0 - base_bound)

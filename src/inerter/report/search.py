@@ -107,11 +107,13 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
             continue
         best = min(known, key=lambda each: each.value)
         gain = improvement(best.value, one.real_baseline(method))
-        against = f", {format_percent(gain)} on {found.study.baseline}" if isfinite(gain) else ""
+        told = format_percent(gain, bound=one.real_gain_bound(best))
+        against = f", {told} on {found.study.baseline}" if isfinite(gain) else ""
         doubt = "" if best.ok else f" ({best.status_text.rstrip('.')})"
         yield (
             f"{capital(one.heading)} with real inerters ({brief_words_of(method)}): {best.network} is the best of "
-            f"{format_count(len(own), 'networks')}, {format_quantity(best.value, one.result.unit)}{against}"
+            f"{format_count(len(own), 'networks')}, "
+            f"{format_quantity(best.value, one.result.unit, bound=best.error_bound)}{against}"
             f"{doubt}."
         )
 

@@ -11,7 +11,7 @@ import numpy as np
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import bound_clause, decisive_method, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult, improvement_bound, percent_below
+from inerter.decision.results import DesignResult, Improvement, IndexResult, percent_below
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     bound_of,
@@ -26,6 +26,7 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.study import Study
 from inerter.formatting import format_list
+from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
 from inerter.report.index_summary import margins_of

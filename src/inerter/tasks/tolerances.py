@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from inerter.decision.results import improvement_bound
 from inerter.errors import StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
@@ -15,6 +14,7 @@ from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import format_decimals, format_number, format_percent_size, format_share
+from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import with_decisive_method
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import tolerance_analysis

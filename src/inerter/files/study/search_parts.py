@@ -154,7 +154,12 @@ class RealPart(StudyPart["RealResult"]):
         if self.found is None:
             design = best_design(study, designs, str(study.baseline), self.index)
             estimate = estimate_of(design, study.resolve_index(self.index, str(study.baseline)), method)
-            return self._result(value=estimate.value, error=estimate.standard_error, status=estimate.status)
+            return self._result(
+                value=estimate.value,
+                error=estimate.standard_error,
+                status=estimate.status,
+                error_bound=estimate.error_bound,
+            )
         assert study.real_inerters is not None
         real, friction = study.real_inerters.shaft, study.real_inerters.friction
         kept = estimate_of(with_real_inerters(self.found, real, friction), self.found.plan.index, method)
@@ -164,7 +169,10 @@ class RealPart(StudyPart["RealResult"]):
             value=best.value if is_feasible else nan,
             error=best.estimate.standard_error,
             status=with_decisive_method(best.status, self.method),
+            error_bound=best.estimate.error_bound,
             kept=kept.value,
+            kept_bound=kept.error_bound,
+            kept_doubt=with_decisive_method(kept.status, self.method).doubt,
             parameters=best.parameters,
             active_bounds=best.active_bounds,
             starts=best.n_starts,
@@ -202,7 +210,10 @@ class RealResult(PartResult):
     standard_error: float
     status: str
     message: str = ""
+    error_bound: float = nan  # relative, sampling apart
     kept: float = nan  # with the values of the ideal network
+    kept_bound: float = nan  # relative
+    kept_doubt: str = ""  # why that value is not certain
     parameters: dict[str, float] = field(default_factory=dict)
     active_bounds: dict[str, str] = field(default_factory=dict)
     starts: int = 0

@@ -35,8 +35,8 @@ def frontier_table(study: Study, one: LayoutSearch) -> Table:
     return _frontier(study, one, "elements", found)
 
 
-def _gain_text(gain: float) -> str | None:
-    return None if isnan(gain) else format_percent(gain)
+def _gain_text(gain: float, bound: float = nan) -> str | None:
+    return None if isnan(gain) else format_percent(gain, bound=bound)
 
 
 def inerters_table(study: Study, one: LayoutSearch) -> Table:
@@ -218,17 +218,19 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
             continue
         unit = one.result.unit
         before, after = real_gains(one, each)
-        gains = [_gain_text(gain) for gain in (before, after, 100.0 * after / before if before > 0.0 else nan)]
+        bound, retained = one.real_gain_bound(each), 100.0 / before if before > 0.0 else nan
+        gains = [_gain_text(before), _gain_text(after, bound), _gain_text(retained * after, retained * bound)]
         content = [
             each.network,
             *([each.method] if several else []),
             Quantity(ideal[each.network], unit),
-            Quantity(each.kept, unit),
-            Quantity(each.value, unit, each.standard_error),
+            Quantity(each.kept, unit, bound=each.kept_bound),
+            Quantity(each.value, unit, each.standard_error, each.error_bound),
             *(gains if compared else []),
             f"{each.agreed} of {each.starts}" if each.starts else None,
         ]
-        rows.append(Row(cells(*content), status="" if each.ok else each.status_text))
+        doubts = ["" if each.ok else each.status_text, each.kept_doubt and f"same values: {each.kept_doubt}"]
+        rows.append(Row(cells(*content), status="; ".join(filter(None, doubts))))
     return Table(f"{capital(one.heading)}: the best networks with real inerters", heads, rows)
 
 
@@ -243,7 +245,8 @@ def real_table(found: StudySearch) -> Table:
     results = [(one, each) for one in found.searches for each in one.real if each.network]
     names = _parameters([each for _, each in results])
     units = [label_with_unit(name, parameter_unit(found.study, name)) for name in names]
-    keys = ("layout", "index", "method", "network", "ideal", "same_values", "value", "standard_error", "unit")
+    keys = ("layout", "index", "method", "network", "ideal", "same_values", "same_values_doubt", "value")
+    errors = ("standard_error", "error_bound", "unit")
     more = ("ideal_improvement_percent", "improvement_percent", *units, "at_bound", "starts", "agreed", "status")
     rows = []
     for one, each in results:
@@ -251,15 +254,15 @@ def real_table(found: StudySearch) -> Table:
         rows.append(
             Row(
                 cells(
-                    *(each.layout, each.index, each.method, each.network, ideal, each.kept, each.value),
-                    *(each.standard_error, one.result.unit, *real_gains(one, each)),
+                    *(each.layout, each.index, each.method, each.network, ideal, each.kept, each.kept_doubt),
+                    *(each.value, each.standard_error, each.error_bound, one.result.unit, *real_gains(one, each)),
                     *(each.parameters.get(name) for name in names),
                     bounds_text(each.active_bounds),
                     *(each.starts, each.agreed, each.status_text),
                 )
             )
         )
-    return Table("Networks with real inerters", [Column(key=key) for key in (*keys, *more)], rows)
+    return Table("Networks with real inerters", [Column(key=key) for key in (*keys, *errors, *more)], rows)
 
 
 def parameter_unit(study: Study, name: str) -> str:

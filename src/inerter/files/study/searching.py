@@ -29,6 +29,7 @@ from inerter.files.study.search_parts import (
 from inerter.files.study.search_tables import front_table, networks_table, real_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.kernels.prepare import ProgressCallback, prepare_on
+from inerter.methods.error_bounds import improvement_bound
 from inerter.network_search.front_results import NetworkFront
 from inerter.network_search.fronts import FrontPlan, front_waves
 from inerter.network_search.plan import SearchPlan
@@ -55,6 +56,11 @@ class LayoutSearch:
     def real_baseline(self, method: str) -> float:
         """The index of the baseline by a method; nan if it is not known."""
         return next((one.value for one in self.real if one.method == method and not one.network), nan)
+
+    def real_gain_bound(self, each: RealResult) -> float:
+        """Largest error of the gain of a network with real inerters on the baseline, by the same method [%]."""
+        base = next((one for one in self.real if one.method == each.method and not one.network), None)
+        return nan if base is None else improvement_bound(each.value, base.value, each.error_bound, base.error_bound)
 
 
 @dataclass(frozen=True, eq=False)

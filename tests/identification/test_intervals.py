@@ -77,6 +77,21 @@ def test_of_a_curved_model_they_end_where_the_sum_of_squares_has_risen(model, tr
         assert WIDER[0] <= (end - best) / (expected - best) <= WIDER[1]
 
 
+@pytest.mark.parametrize("end", [0.3, 0.8, 1.5])
+def test_they_follow_a_valley_that_bends(end):
+    """Values of the second coordinate fit as well as zero, if the first one changes with its square."""
+    along = (TIME - 0.5) / np.linalg.norm(TIME - 0.5)
+    slope = t.ppf(0.975, TIME.size - 2) * SIZE * np.sqrt(TIME.size / (TIME.size - 2)) / end
+
+    def formula(x):
+        across, valley = x[0], 2.0 * x[1] ** 2
+        return across + across**3 - valley - valley**3 + slope * x[1] * along
+
+    _, ends = intervals(Explicit(formula, ALTERNATING, 2), [0.0, 0.01])
+    ratio = np.abs(ends[1]) / end
+    assert np.all((ratio >= 0.97) & (ratio <= 1.1)), ratio
+
+
 @pytest.mark.campaign
 def test_they_hold_the_truth_as_often_as_they_say():
     columns = np.column_stack([np.ones(TIME.size), TIME, np.sin(9.0 * TIME)])

@@ -21,7 +21,9 @@ Matrix = NDArray[np.float64]
 ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _STEPS = (1e-6, 1e-2)  # of a coordinate, between which differences are taken
 _BLOCKS = 40
-_FOLLOWING, _SEARCHING = 3, 8
+_FOLLOWING, _SEARCHING, _RETURNING = 3, 8, 8
+_RETURNED = 1e-5  # relative change of the cost that ends a return to the profile
+_BENT = 1.25  # times the rise of a linear model: a profile that rises more is followed with derivatives near there
 LEVEL = 0.95
 
 
@@ -71,13 +73,18 @@ def _best_fit(problem: FitProblem, point: Matrix, cost: float, residual: Matrix,
     )
 
 
-def fit_by_secants(problem: FitProblem, start: Matrix, jacobian: Matrix, rounds: int, accuracy: float) -> BestFit:
+def fit_by_secants(
+    problem: FitProblem, start: Matrix, jacobian: Matrix, rounds: int, accuracy: float, held: int | None = None
+) -> BestFit:
     """The fit after some Gauss-Newton steps from `start`, near which the derivatives of the residuals are known.
 
     Each step takes one simulation, which updates the derivatives too (Broyden 1965); a step without improvement is
-    damped (Levenberg 1944). The fit ends where a step changes the cost by less than `accuracy`.
+    damped (Levenberg 1944). The fit ends where a step changes the cost by less than `accuracy`. The coordinate `held`
+    stays at its start.
     """
-    lower, upper = problem.space.bounds
+    lower, upper = (bound.copy() for bound in problem.space.bounds)
+    if held is not None:
+        lower[held] = upper[held] = start[held]
     size = np.maximum(np.linalg.norm(jacobian, axis=0), 1e-300)
     point, slopes, damping = np.clip(start, lower, upper), jacobian / size, 1e-6
     residual = problem.residual(point)
@@ -181,11 +188,13 @@ def _profile_side(
     room = sign * (bound - start)
     if room <= 1e-9:
         return Side(bound, False), points, None
-    inside, outside = (0.0, 0.0), (np.inf, np.inf)
+    inside, outside, near = (0.0, 0.0), (np.inf, np.inf), optimum.point
     reach = float(np.sqrt(2.0 * threshold / max(_stiffness(optimum, i), 1e-300)))
     away = min(max(reach, 1e-9), room)
     for _ in range(_SEARCHING):
         cost, point = constrained_optimum(problem, optimum, i, start + sign * away)
+        if optimum.point.size > 1 and cost - optimum.cost > threshold * max(_BENT * away / reach, 0.9) ** 2:
+            cost, point = min((cost, point), _followed(problem, optimum, near, i, start + sign * away), key=_cost_of)
         root = float(np.sign(cost - optimum.cost) * np.sqrt(abs(cost - optimum.cost) / threshold))
         points.append((start + sign * away, max(root, 0.0) ** 2))
         if root < -0.3:
@@ -194,7 +203,7 @@ def _profile_side(
         if abs(root - 1.0) < 0.03:
             return Side(start + sign * away, True), points, better
         if root < 1.0:
-            inside = (away, max(root, 0.0))
+            inside, near = (away, max(root, 0.0)), point
             if away >= room * (1.0 - 1e-12):
                 return Side(bound, False), points, better
         else:
@@ -205,6 +214,23 @@ def _profile_side(
             share = np.clip((1.0 - inside[1]) / (outside[1] - inside[1]), 0.1, 0.9)
             away = inside[0] + float(share) * (outside[0] - inside[0])
     return Side(start + sign * min(outside[0], room), np.isfinite(outside[0])), points, better
+
+
+def _followed(problem: FitProblem, optimum: BestFit, near: Matrix, i: int, value: float) -> tuple[float, Matrix]:
+    """The least cost with coordinate i at `value`, from the point `near` of its profile, with the derivatives there."""
+    lower, upper = problem.space.bounds
+    J = problem.jacobian(near, steps_of(optimum))
+    others = [j for j in range(near.size) if j != i]
+    point = near.copy()
+    point[i] = value
+    if others:
+        point[others] -= np.linalg.lstsq(J[:, others], J[:, i], rcond=1e-6)[0] * (value - near[i])
+    found = fit_by_secants(problem, np.clip(point, lower, upper), J, _RETURNING, _RETURNED, held=i)
+    return found.cost, found.point
+
+
+def _cost_of(found: tuple[float, Matrix]) -> float:
+    return found[0]
 
 
 def _stiffness(optimum: BestFit, i: int) -> float:

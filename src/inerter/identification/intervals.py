@@ -194,7 +194,9 @@ def _profile_side(
     for _ in range(_SEARCHING):
         cost, point = constrained_optimum(problem, optimum, i, start + sign * away)
         if optimum.point.size > 1 and cost - optimum.cost > threshold * max(_BENT * away / reach, 0.9) ** 2:
-            cost, point = min((cost, point), _followed(problem, optimum, near, i, start + sign * away), key=_cost_of)
+            cost, point = min(
+                (cost, point), _follow_profile(problem, optimum, near, i, start + sign * away), key=_cost_of
+            )
         root = float(np.sign(cost - optimum.cost) * np.sqrt(abs(cost - optimum.cost) / threshold))
         points.append((start + sign * away, max(root, 0.0) ** 2))
         if root < -0.3:
@@ -216,7 +218,7 @@ def _profile_side(
     return Side(start + sign * min(outside[0], room), np.isfinite(outside[0])), points, better
 
 
-def _followed(problem: FitProblem, optimum: BestFit, near: Matrix, i: int, value: float) -> tuple[float, Matrix]:
+def _follow_profile(problem: FitProblem, optimum: BestFit, near: Matrix, i: int, value: float) -> tuple[float, Matrix]:
     """The least cost with coordinate i at `value`, from the point `near` of its profile, with the derivatives there."""
     lower, upper = problem.space.bounds
     J = problem.jacobian(near, steps_of(optimum))

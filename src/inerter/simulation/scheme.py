@@ -76,7 +76,6 @@ class Scheme:
 class _Rows:
     """Quantities of a step as rows over its numbers."""
 
-    mean_rate: Matrix  # of each branch
     elongation: Matrix  # at the start
     linear: Matrix  # mean forces of springs and dampers
     momentum: Matrix  # at the end
@@ -143,7 +142,7 @@ def _rows(parts: Parts, road_hold: tuple[str, ...], offsets: Matrix, at: StepPla
     balance = (momentum - p) / h + E.T @ linear - parts.ports @ unit[at.force]
     velocity0 = inertia.inverse @ (p - inertia.B @ unit[at.rate0])
     velocity1 = inertia.inverse @ (momentum - inertia.B @ unit[at.rate1])
-    return _Rows(mean_rate, elongation, linear, momentum, velocity0, velocity1, balance)
+    return _Rows(elongation, linear, momentum, velocity0, velocity1, balance)
 
 
 def _relaxation(parts: Parts) -> Matrix:

@@ -307,6 +307,7 @@ def test_a_quantile_of_values_that_scatter_is_no_more_certain_than_they_are():
         assert found.value == pytest.approx(value.value, rel=1e-5)
         assert found.standard_error == pytest.approx(value.standard_error, rel=1e-2)
         assert found.interval == pytest.approx(value.interval, rel=1e-4)
+    assert quantile.realisations == 2  # roads, on which a comparison or a break-even value simulates both designs
 
 
 def test_a_quantile_on_a_measured_road_has_its_error():

@@ -112,7 +112,7 @@ class Quantile(OfIndex):
         bound = float(np.maximum(getattr(method, "promise", np.nan), here.error_bound))  # also by a measured road
         sources = (ErrorSource("values of the sample", bound),)
         status = scatter_left_out(vehicle, method, self.scatter)
-        return Estimate(value, self.unit, status, error, interval, values.size, error_sources=sources)
+        return Estimate(value, self.unit, status, error, interval, here.realisations, error_sources=sources)
 
     def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """Quantiles (designs,) at many values of the free values, nan where unknown."""

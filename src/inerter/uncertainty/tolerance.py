@@ -97,7 +97,7 @@ class Tolerance:
         if not np.isfinite(value):
             return Estimate(value, self.unit, self.status)
         error, interval = with_scatter_of_values(value, quantile_error(self.values, share), self.nominal)
-        return Estimate(value, self.unit, self.status, error, interval, self.values.size)
+        return Estimate(value, self.unit, self.status, error, interval, self.nominal.realisations)
 
 
 def tolerance_analysis(

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Visitor, drop, wait_until
+from browser import Served, Visitor, drop, wait_until
 from campaigns import sampled
 from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
@@ -146,6 +146,67 @@ def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visit
     assert "chosen yet" in page.inner_text("#verdict > b")
     assert page.inner_text(".optimise [role=status]") == ""
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
+
+
+EARLY: dict[str, tuple[str, Callable[[Any], Any]]] = {
+    "a tolerance": ("panel/tolerance", lambda page: _find_out("tolerance")(page)),
+    "a budget": ("panel/budget", lambda page: _find_out("budget")(page)),
+    "break-even values": (
+        "work",
+        lambda page: (page.click("#tab-margins"), page.get_by_role("button", name="Compute break-even values").click()),
+    ),
+    "a report": ("work", lambda page: _save("Report of these designs (HTML)")(page)),
+    "a study file": ("study/write", lambda page: _save("This design, values fixed (TOML)")(page)),
+    "an export": (
+        "export/design",
+        lambda page: (page.click("#export-menu > summary"), page.locator("#export-menu .edged").first.click()),
+    ),
+}
+
+
+@pytest.mark.parametrize("what", sampled(EARLY, often=["a tolerance"], kept=2))
+def test_what_is_asked_before_the_first_optimum_is_asked_of_it(
+    what: str, served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    """A page begins at the optimum of its designs: what a button asks before that waits for it, and says so."""
+    visitor = visitors(served)
+    page = visitor.page
+    path, ask = EARLY[what]
+    asked: list[Any] = []
+
+    def refuse(route: Any) -> None:
+        if route.request.method != "POST":
+            return route.fallback()
+        asked.append(route.request.post_data_json)
+        return route.fulfill(status=400, body=json.dumps({"sentence": "Not today."}))
+
+    page.route(f"**/api/{path}", refuse)
+    with held(visitor, "panel/optimise") as waiting:
+        with page.expect_request("**/api/panel/optimise"):
+            visitor.visit()
+        page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
+        ask(page)
+        page.evaluate(FRAMES)
+        assert asked == []
+        if path.startswith("panel/"):
+            assert page.locator("#tab-panel form[aria-busy=true] .moving").count() == 1
+        with page.expect_request(f"**/api/{path}"):
+            waiting.pop().continue_()
+    page.evaluate(FRAMES)
+    body = asked[0]
+    assert set((body.get("design") or body["designs"][0])["values"]) == {"b", "c"}
+    if path != "study/write":
+        page.get_by_text("Not today.").first.wait_for()  # the answer to what is asked now, and shown
+
+
+def test_a_page_that_is_reloaded_before_its_first_optimum_begins_at_it_too(
+    served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    visitor = visitors(served)
+    with held(visitor, "panel/optimise"), visitor.page.expect_request("**/api/panel/optimise"):
+        visitor.visit()
+    visitor.page.reload()
+    visitor.chosen()
 
 
 def _moves(page: Any) -> None:

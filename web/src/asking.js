@@ -3,7 +3,7 @@
 
 import { Lost, Refusal, postNow } from "./api.js";
 import { questions, soughtOf } from "./questions.js";
-import { settledOn, shownOf } from "./state/answers.js";
+import { AWAITED, settledOn, shownOf } from "./state/answers.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -138,17 +138,39 @@ export const isUnauthorised = (error) => error instanceof Refusal && error.statu
  * @param {State} state */
 const isBeingChosen = ({ choosing, history }) => choosing !== null && choosing === history.present.study;
 
-/** Asks what a button of a panel asks, with parameters of its form; the answer stands in the state.
- * @param {Store} store @param {Api} api @param {string} panel @param {any} parameters */
-export async function seek(store, api, panel, parameters) {
+/** Waits until the study that is open has the values that it begins with, so that what is asked then is about them;
+ * gives the document as it is then, or null if another one has been opened. @param {Store} store
+ * @returns {Promise<import("./state/document.js").Document | null>} */
+export const whenChosen = (store) => new Promise((resolve) => {
+  const { turn } = store.get();
+  const look = () => {
+    const state = store.get();
+    if (state.connection === "compiling" || isBeingChosen(state)) return;
+    leave();
+    resolve(state.turn === turn ? state.history.present : null);
+  };
+  const leave = store.subscribe(look);
+  look();
+});
+
+/** Asks what a button of a panel asks, with parameters of its form, once its design has values; the answer stands in
+ * the state. @param {Store} store @param {string} panel @param {any} parameters
+ * @param {(question: import("./questions.js").Question) => Promise<any>} answer */
+export async function seek(store, panel, parameters, answer) {
   store.dispatch({ type: "sought", panel, parameters });
-  const question = soughtOf(store.get(), panel);
+  store.dispatch({ type: "asked", panel, question: AWAITED });
+  const question = (await whenChosen(store)) && soughtOf(store.get(), panel);
   if (question === null) return;
-  const { key, path, body } = question;
+  const { key } = question;
   store.dispatch({ type: "asked", panel, question: key });
   try {
-    store.dispatch({ type: "answered", panel, question: key, value: await postNow(api, path, panel, body) });
+    store.dispatch({ type: "answered", panel, question: key, value: await answer(question) });
   } catch (error) {
     store.dispatch({ type: "refused", panel, question: key, sentence: /** @type {Error} */ (error).message });
   }
 }
+
+/** The same of a panel that answers at once. @param {Store} store @param {Api} api @param {string} panel
+ * @param {any} parameters */
+export const seekNow = (store, api, panel, parameters) =>
+  seek(store, panel, parameters, ({ path, body }) => postNow(api, path, panel, body));

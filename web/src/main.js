@@ -37,7 +37,7 @@ function enter(text) {
 
 /** The document to begin with: that of the link, that of before a reload, that of the command line.
  * @param {{study: any, stamp: string}} start
- * @returns {Promise<import("./state/document.js").Document | {study: any} | null>} */
+ * @returns {Promise<import("./state/document.js").Document | {study: any, values?: undefined} | null>} */
 async function firstDocument({ study, stamp }) {
   const linked = address.state === null ? null : await unpacked(address.state);
   if (linked) {
@@ -89,7 +89,7 @@ async function begin(start) {
     store.dispatch({ type: "began" });
   }
   if (unread) store.say("The link holds no state that this page can read.");
-  return document !== null && !known;
+  return document !== null && Object.keys(document.values ?? {}).length === 0;
 }
 
 /** Waits until the kernels are compiled, and tells which one is under way. */

@@ -5,7 +5,7 @@ import { freeIn, layoutsWith, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
-import { indicesIn, nextLayout, textOf } from "./state/document.js";
+import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -107,9 +107,10 @@ export async function beginAtBest(store, api, gesture = null) {
   try {
     const designs = await untilFound(() => bestAtFirst(api, study, index, method));
     const { present } = store.get().history;
-    if (designs.length === 0 || present.study !== study || Object.keys(present.values).length > 0) return;
-    takeOptima(store, designs, gesture, study);
-    const doubts = doubted(designs.flatMap(membersOf));
+    const open = designs.filter(({ layout }) => own(present.values, layout) === undefined); // nobody has chosen those
+    if (open.length === 0 || present.study !== study) return;
+    takeOptima(store, open, gesture, study);
+    const doubts = doubted(open.flatMap(membersOf));
     if (doubts) store.say(doubts.trim());
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.

@@ -1,5 +1,6 @@
 // The design that is edited in the formats of other programs: the library declares the kinds.
 
+import { whenChosen } from "../asking.js";
 import { elementsIn, isSearched, kindOf } from "../library.js";
 import { DropDown } from "../parts/controls.js";
 import { Unchosen } from "../parts/doubts.js";
@@ -24,7 +25,10 @@ export function ExportMenu({ store, api }) {
     /** @type {Element} */ (currentTarget).closest("details")?.removeAttribute("open");
     store.dispatch({ type: "closed", about: ABOUT });
     try {
-      const file = await api.blob("export/design", { kind, suffix, study, design, index: goalOf(state), linear });
+      const document = await whenChosen(store);
+      if (document === null) return;
+      const file = await api.blob("export/design", { kind, suffix, study: document.study, design: designOf(document),
+        index: goalOf(state), linear });
       download(file, `${fileName(study.title)}-${fileName(layout)}${suffix}`);
     } catch (error) {
       store.say(/** @type {Error} */ (error).message, ABOUT);

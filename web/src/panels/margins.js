@@ -1,9 +1,9 @@
 // What the design bears: break-even values against the baseline, other speeds, scatter; asked by a button, and a job,
 // since it simulates.
 
-import { seek } from "../asking.js";
+import { seek, seekNow } from "../asking.js";
 import { elementsIn, kindOf } from "../library.js";
-import { baselineOf, goalOf, soughtAnswer, soughtOf } from "../questions.js";
+import { baselineOf, goalOf, soughtAnswer } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { doubted, isOk } from "../parts/doubts.js";
@@ -27,21 +27,12 @@ export function marginTold(value) {
 const NAME = "margins";
 
 /** Begins the job; its result is the answer to what is asked now. @param {Store} store @param {Api} api */
-async function compute(store, api) {
-  store.dispatch({ type: "sought", panel: NAME, parameters: {} });
-  const question = soughtOf(store.get(), NAME);
-  if (question === null) return;
-  const { key, body } = question;
-  store.dispatch({ type: "asked", panel: NAME, question: key });
-  try {
-    const title = `Break-even values of ${body.design.layout}: ${body.study.title ?? "study"}`;
-    const job = await ended(store, await begin(store, api, { kind: NAME, title, ...body }));
-    store.dispatch(job?.result ? { type: "answered", panel: NAME, question: key, value: job.result }
-      : { type: "refused", panel: NAME, question: key, sentence: job?.sentence || "Stopped." });
-  } catch (error) {
-    store.dispatch({ type: "refused", panel: NAME, question: key, sentence: /** @type {Error} */ (error).message });
-  }
-}
+const compute = (store, api) => seek(store, NAME, {}, async ({ body }) => {
+  const title = `Break-even values of ${body.design.layout}: ${body.study.title ?? "study"}`;
+  const job = await ended(store, await begin(store, api, { kind: NAME, title, ...body }));
+  if (!job?.result) throw new Error(job?.sentence || "Stopped.");
+  return job.result;
+});
 
 /** @param {{store: Store, api: Api}} props */
 export function MarginsPanel({ store, api }) {
@@ -93,7 +84,7 @@ function Budget({ store, api, indices }) {
   const { is, value, sentence } = soughtAnswer(state, "budget");
   return html`<section class="budget"><h3>Break-even value of one element</h3>
     <form class="row" aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
-      void seek(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") }))}>
+      void seekNow(store, api, "budget", { index: form.get("index"), parameter: form.get("parameter") }))}>
     <${Select} label="Element" name="parameter" key=${document.layout} choices=${names} selected=${switching} />
     <${Select} label="Index" name="index" selected=${goalOf(state)}
       key=${goalOf(state)} choices=${indices.map(({ symbol }) => symbol)} />

@@ -1,5 +1,6 @@
 // Opening, undoing, sharing and downloading.
 
+import { whenChosen } from "../asking.js";
 import { indicesOf } from "./answers.js";
 import { ExportMenu } from "./exports.js";
 import { bodyOf, comparedOf, designOf, shownDesigns } from "../questions.js";
@@ -10,34 +11,38 @@ import { begin, ended, openStudy } from "../working.js";
 
 /** @import { Store } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
+/** @import { Document } from "../state/document.js" */
 
 /** @param {{store: Store, api: Api}} props */
 export function Menu({ store, api }) {
   const state = store.get();
   const { history } = state;
-  const { study } = history.present;
+  const { study, layout } = history.present;
   const name = fileName(study.title);
   const blank = Object.keys(study).length === 0;
-  /** @param {() => Promise<void>} work */
-  const attempt = (work) => () => work().catch((/** @type {Error} */ { message }) => store.say(message));
-  /** @param {string} called @param {() => Promise<Blob>} made */
-  const save = (called, made) => attempt(async () => download(await made(), called));
-  /** @param {string} called @param {object} body */
-  const file = (called, body) => save(`${called}.toml`, async () =>
-    new Blob([(await api.post("study/write", body)).text], { type: "application/toml" }));
-  const design = designOf(history.present);
+  /** @param {(document: Document) => Promise<void>} work */
+  const attempt = (work) => () => whenChosen(store).then((document) => document && work(document))
+    .catch((/** @type {Error} */ { message }) => store.say(message));
+  /** @param {string} called @param {(document: Document) => Promise<Blob>} made */
+  const save = (called, made) => attempt(async (document) => download(await made(document), called));
+  /** @param {string} called @param {(document: Document) => object} body */
+  const file = (called, body) => save(`${called}.toml`, async (document) =>
+    new Blob([(await api.post("study/write", body(document))).text], { type: "application/toml" }));
   /** @param {string} panel */
   const csv = (panel) => save(panel === "indices" ? `${name}.csv` : `${name}-${panel}.csv`, () =>
     api.blob("export/csv", { panel, request: bodyOf(store.get(), panel) }));
   const indices = indicesOf(state).map(({ symbol }) => symbol);
   const [index, setIndex] = useChoice(indices);
-  /** Buttons that save a figure in both formats. @param {string} title @param {string} kind @param {any[]} designs
-   * @param {object} [more] */
+  /** Buttons that save a figure in both formats. @param {string} title @param {string} kind
+   * @param {(document: Document) => any[]} designs @param {object} [more] */
   const figures = (title, kind, designs, more) => ["svg", "png"].map((format) => html`<button type="button"
-    onClick=${save(`${name}-${kind}.${format}`, () => api.blob("figure", { kind, format, study, designs, ...more }))}>
+    onClick=${save(`${name}-${kind}.${format}`, (document) =>
+    api.blob("figure", { kind, format, study: document.study, designs: designs(document), ...more }))}>
     ${title} (${format.toUpperCase()})</button>`);
   const whole = attempt(() => runStudy(store, api));
-  const page = attempt(() => saveReport(store, api, `${name}-report.html`));
+  const page = attempt((document) => saveReport(store, api, document, `${name}-report.html`));
+  /** @param {Document} document */
+  const alone = (document) => [designOf(document)];
   return html`<div class="row" role="group" aria-label="Memory">
     <button type="button" title="Undo (Ctrl+Z)" disabled=${history.past.length === 0}
       onClick=${() => store.dispatch({ type: "undone" })}>Undo</button>
@@ -45,18 +50,18 @@ export function Menu({ store, api }) {
       onClick=${() => store.dispatch({ type: "redone" })}>Redo</button>
     <${Open} store=${store} api=${api} />
     ${!blank && html`<${DropDown} title="Save" id="save-menu">
-      <button type="button" onClick=${file(name, { study })}>Study file (TOML)</button>
-      <button type="button" onClick=${file(`${name}-${fileName(history.present.layout)}`,
-        { study, designs: [design] })}>This design, values fixed (TOML)</button>
+      <button type="button" onClick=${file(name, (document) => ({ study: document.study }))}>Study file (TOML)</button>
+      <button type="button" onClick=${file(`${name}-${fileName(layout)}`, (document) =>
+        ({ study: document.study, designs: alone(document) }))}>This design, values fixed (TOML)</button>
       <button type="button" onClick=${csv("indices")}>Indices (CSV)</button>
       <button type="button" onClick=${csv("response")}>Frequency response (CSV)</button>
       ${comparedOf(state).length > 1
         && html`<button type="button" onClick=${csv("compare")}>Comparison (CSV)</button>`}
       <button type="button" onClick=${csv("history")}>On the road (CSV)</button>
-      ${figures("Network", "networks", [design])}
+      ${figures("Network", "networks", alone)}
       ${index && html`<${Select} label="Response of" value=${index} choices=${indices} set=${setIndex} />
-        ${figures("Response", `response-${index}`, shownDesigns(history.present))}`}
-      ${figures("On the road", "history", [design], { duration: state.view.seconds, seed: state.view.seed })}
+        ${figures("Response", `response-${index}`, shownDesigns)}`}
+      ${figures("On the road", "history", alone, { duration: state.view.seconds, seed: state.view.seed })}
       <button type="button" onClick=${page}>Report of these designs (HTML)</button>
       <button type="button" onClick=${whole}>Report: run the study</button>
     <//>
@@ -73,9 +78,8 @@ async function runStudy(store, api) {
 }
 
 /** Saves the report of the design that is edited and of the baseline, once its job has ended.
- * @param {Store} store @param {Api} api @param {string} called */
-async function saveReport(store, api, called) {
-  const document = store.get().history.present;
+ * @param {Store} store @param {Api} api @param {Document} document @param {string} called */
+async function saveReport(store, api, document, called) {
   const { study, layout } = document;
   store.say("The report is being made: see Jobs.", "report");
   const job = await ended(store, await begin(store, api, { kind: "report", study, designs: shownDesigns(document),

@@ -1,6 +1,6 @@
 // What scatter of its elements makes of an index of the design, and which of them matters.
 
-import { seek } from "../asking.js";
+import { seekNow } from "../asking.js";
 import { elementsIn } from "../library.js";
 import { designOf, soughtAnswer, soughtOf } from "../questions.js";
 import { Moving } from "../parts/clock.js";
@@ -32,7 +32,7 @@ export function TolerancePanel({ store, api }) {
     await api.blob("export/csv", { panel: "tolerance", request: soughtOf(state, "tolerance")?.body }),
     `tolerance-${value.index}.csv`);
   return html`<form aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
-    void seek(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) }))}>
+    void seekNow(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) }))}>
     <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally
       likely. What is empty does not scatter.</p>
     <div class="row spreads">

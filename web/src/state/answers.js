@@ -54,11 +54,15 @@ export function shownOf(answers = NOTHING, question) {
   return { is: "coming", value: before ? latest.value : null, sentence: null, before };
 }
 
+/** What is under way while the design that a button asks about is still to get its values. */
+export const AWAITED = "";
+
 /** The same of a question that is asked by a button: it comes only if it is under way.
  * @param {Answers | undefined} answers @param {string | null} question @returns {Shown} */
 export function soughtIn(answers = NOTHING, question) {
   const shown = shownOf(answers, question);
-  return shown.is === "coming" ? { ...NONE, is: answers.underWay === question ? "coming" : "none" } : shown;
+  const comes = answers.underWay === question || answers.underWay === AWAITED;
+  return shown.is === "coming" ? { ...NONE, is: comes ? "coming" : "none" } : shown;
 }
 
 /** A question without its numbers, and whatever output is drawn: what it has in common with that of another step of the

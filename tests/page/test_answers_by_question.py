@@ -148,15 +148,65 @@ def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visit
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
 
 
+def _moves(page: Any) -> None:
+    """Wait for less than two seconds until something tells how long an answer is coming, and see that it goes on."""
+    page.wait_for_selector(".clock", timeout=2000)
+    before = page.inner_text(".clock >> nth=0")
+    page.wait_for_function(
+        "text => (document.querySelector('.clock')?.innerText ?? text) !== text", arg=before, timeout=2000
+    )
+
+
+def _slide(page: Any, name: str = "k") -> None:
+    page.fill(f"[id='entry elements.{name}']", "100 kN/m")
+    page.keyboard.press("Enter")
+
+
+def _save(name: str) -> Callable[[Any], None]:
+    def save(page: Any) -> None:
+        page.get_by_text("Save", exact=True).click()
+        page.get_by_role("button", name=name).click()
+
+    return save
+
+
+def _find_out(tab: str) -> Callable[[Any], None]:
+    def ask(page: Any) -> None:
+        page.click(f"#tab-{'margins' if tab == 'budget' else tab}")
+        page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Compute").click()
+
+    return ask
+
+
+ASKING: dict[str, Callable[[Any], None]] = {
+    "a slider": _slide,
+    "a road": lambda page: (
+        page.click("#tab-history"),
+        page.fill("label:has-text('for [s]') input", "12"),
+        page.keyboard.press("Enter"),
+    ),
+    "an optimum": lambda page: page.get_by_role("button", name="Find best").click(),
+    "a budget": _find_out("budget"),
+    "a tolerance": _find_out("tolerance"),
+    "a picture": _save("On the road (PNG)"),
+    "a table": _save("Frequency response (CSV)"),
+    "a study": lambda page: (
+        page.get_by_text("Open", exact=True).click(),
+        page.set_input_files(".menu input[type=file]", str(EXAMPLES / "seat.toml")),
+    ),
+    "work": lambda page: (page.click("#tab-work"), page.locator("form.begin button").first.click()),
+}
+
+
 EARLY: dict[str, tuple[str, Callable[[Any], Any]]] = {
-    "a tolerance": ("panel/tolerance", lambda page: _find_out("tolerance")(page)),
-    "a budget": ("panel/budget", lambda page: _find_out("budget")(page)),
+    "a tolerance": ("panel/tolerance", _find_out("tolerance")),
+    "a budget": ("panel/budget", _find_out("budget")),
     "break-even values": (
         "work",
         lambda page: (page.click("#tab-margins"), page.get_by_role("button", name="Compute break-even values").click()),
     ),
-    "a report": ("work", lambda page: _save("Report of these designs (HTML)")(page)),
-    "a study file": ("study/write", lambda page: _save("This design, values fixed (TOML)")(page)),
+    "a report": ("work", _save("Report of these designs (HTML)")),
+    "a study file": ("study/write", _save("This design, values fixed (TOML)")),
     "an export": (
         "export/design",
         lambda page: (page.click("#export-menu > summary"), page.locator("#export-menu .edged").first.click()),
@@ -209,56 +259,6 @@ def test_a_page_that_is_reloaded_before_its_first_optimum_begins_at_it_too(
     visitor.chosen()
 
 
-def _moves(page: Any) -> None:
-    """Wait for less than two seconds until something tells how long an answer is coming, and see that it goes on."""
-    page.wait_for_selector(".clock", timeout=2000)
-    before = page.inner_text(".clock >> nth=0")
-    page.wait_for_function(
-        "text => (document.querySelector('.clock')?.innerText ?? text) !== text", arg=before, timeout=2000
-    )
-
-
-def _slide(page: Any, name: str = "k") -> None:
-    page.fill(f"[id='entry elements.{name}']", "100 kN/m")
-    page.keyboard.press("Enter")
-
-
-def _save(name: str) -> Callable[[Any], None]:
-    def save(page: Any) -> None:
-        page.get_by_text("Save", exact=True).click()
-        page.get_by_role("button", name=name).click()
-
-    return save
-
-
-def _find_out(tab: str) -> Callable[[Any], None]:
-    def ask(page: Any) -> None:
-        page.click(f"#tab-{'margins' if tab == 'budget' else tab}")
-        page.locator(".budget" if tab == "budget" else "#tab-panel").get_by_role("button", name="Compute").click()
-
-    return ask
-
-
-ASKING: dict[str, Callable[[Any], None]] = {
-    "a slider": _slide,
-    "a road": lambda page: (
-        page.click("#tab-history"),
-        page.fill("label:has-text('for [s]') input", "12"),
-        page.keyboard.press("Enter"),
-    ),
-    "an optimum": lambda page: page.get_by_role("button", name="Find best").click(),
-    "a budget": _find_out("budget"),
-    "a tolerance": _find_out("tolerance"),
-    "a picture": _save("On the road (PNG)"),
-    "a table": _save("Frequency response (CSV)"),
-    "a study": lambda page: (
-        page.get_by_text("Open", exact=True).click(),
-        page.set_input_files(".menu input[type=file]", str(EXAMPLES / "seat.toml")),
-    ),
-    "work": lambda page: (page.click("#tab-work"), page.locator("form.begin button").first.click()),
-}
-
-
 @pytest.mark.parametrize("what", sampled(ASKING, kept=3))
 def test_nothing_is_silent_for_two_seconds(what: str, visitor: Visitor) -> None:
     page = visitor.page
@@ -293,6 +293,33 @@ def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor
     assert page.locator(".answers tr:not(.on) [data-value]").count() > 0
     assert "S3e" not in page.locator(".drawn .name").all_inner_texts()
     assert page.locator(".vehicle canvas").count() == 0
+
+
+TOOLS = """() => [...document.querySelectorAll(".plot-tools > *, .plot-ends > *, .plot-area")].map(each => {
+  const { x, y, width, height } = each.getBoundingClientRect();
+  return each.matches(".being") ? [x, y] : [x, y, width, height];
+})"""
+
+
+@pytest.mark.parametrize("tab", TABS)
+def test_the_tools_of_a_plot_stay_where_they_are_while_its_answer_comes(tab: str, visitor: Visitor) -> None:
+    """However long that takes, and on screens on which there is little room beside them."""
+    page = visitor.page
+    _opened(visitor, "half-car")
+    visitor.chosen()
+    page.get_by_role("button", name="Close the message").click()
+    page.click(f"#tab-{tab}")
+    visitor.settled()
+    for width in (1280, 1360, 1920):
+        page.set_viewport_size({"width": width, "height": 900})
+        visitor.drawn()
+        before = page.evaluate(TOOLS)
+        with held(visitor):
+            page.fill("[id='entry elements.k']", f"{width} N/cm")
+            page.keyboard.press("Enter")
+            page.wait_for_selector("#tab-panel .being .clock", state="attached")
+            assert page.evaluate(TOOLS) == before, width
+        visitor.settled()
 
 
 def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> None:

@@ -245,3 +245,33 @@ def test_one_button_alone_is_filled(served: Served, visitors: Callable[..., Visi
             assert visitor.page.locator("button.main").all_inner_texts() == [
                 "Find best O" if name == "quarter-car" else "Search for the best network"
             ]
+
+
+def test_values_that_nobody_has_chosen_are_optimised_from_the_verdict_and_taken(visitor: Visitor) -> None:
+    """Of a train, whose optimum is a job: it is begun beside the verdict, and its values are there when it is done."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "train.toml")
+    page.wait_for_selector("text=train.toml is open")
+    visitor.settled()
+    page.locator("#verdict").get_by_role("button", name="Values not chosen: optimise all layouts").click()
+    page.wait_for_selector(".notice:has-text('The best J1 of S1, S3')", timeout=120_000)
+    visitor.chosen()
+    visitor.settled()
+    assert page.locator("#verdict .stale").count() == 0
+    assert "better than S1" in page.inner_text("#verdict > b")
+    page.locator(".job").first.get_by_role("button", name="Forget").click()  # for other tests on this server
+
+
+def test_the_optimum_of_a_job_is_not_put_into_another_study(visitor: Visitor) -> None:
+    page = visitor.page
+    visitor.open(EXAMPLES / "train.toml")
+    page.wait_for_selector("text=train.toml is open")
+    visitor.settled()
+    page.get_by_role("button", name="All layouts", exact=True).click()
+    page.wait_for_selector(".job")
+    page.fill("[id='entry elements.k']", "390 kN/m")
+    page.keyboard.press("Enter")
+    page.wait_for_selector(".job[data-state=done] >> text=Take it into the editor", timeout=120_000)
+    visitor.settled()
+    assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
+    page.locator(".job").first.get_by_role("button", name="Forget").click()  # for other tests on this server

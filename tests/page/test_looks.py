@@ -122,3 +122,40 @@ def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: S
                 faults[what] = found
         page.context.close()
     assert faults == {}
+
+
+CUT = """() => [...document.querySelectorAll(".amount > .entry")]
+  .filter(each => each.clientWidth > 0 && each.scrollWidth > each.clientWidth).map(each => each.value)"""
+OUTSIDE = """() => {
+  const { left, right } = document.querySelector(".drawing rect.chosen").getBoundingClientRect();
+  return [...document.querySelectorAll(".drawing text.value")].filter(each => each.getBoundingClientRect().width > 0)
+    .filter(each => each.getBoundingClientRect().right > right || each.getBoundingClientRect().left < left)
+    .map(each => each.textContent);
+}"""
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_values_are_whole_and_inside_their_frames(size: str, visitor: Visitor) -> None:
+    """Of a half car, whose damping has five digits and a long unit: in its row, and in the drawing of the strut."""
+    page = visitor.page
+    width, height = SIZES[size]
+    page.set_viewport_size({"width": width, "height": height})
+    visitor.open(EXAMPLES / "half-car.toml")
+    page.wait_for_selector("text=half-car.toml is open")
+    visitor.chosen()
+    page.wait_for_function("() => document.querySelector('.drawing text.value')")
+    assert page.locator(".amount .entry").evaluate_all("all => all.some(each => /^\\d\\.\\d{4} kN s/.test(each.value))")
+    assert page.evaluate(CUT) == []
+    assert page.evaluate(OUTSIDE) == []
+
+
+def test_the_tab_that_is_shown_is_seen_in_its_row(visitor: Visitor) -> None:
+    """On a narrow screen the row of tabs is longer than the screen."""
+    page = visitor.page
+    page.set_viewport_size({"width": 420, "height": 800})
+    for tab in reversed(TABS):
+        page.evaluate("tab => document.getElementById(`tab-${tab}`).click()", tab)
+        visitor.drawn()
+        row, box = (page.locator(each).bounding_box() for each in ("[role=tablist]", f"#tab-{tab}"))
+        assert row["x"] - 1 <= box["x"], tab
+        assert box["x"] + box["width"] <= row["x"] + row["width"] + 1, tab

@@ -194,3 +194,55 @@ def test_frames_are_short(visitor: Visitor, serve: Callable[..., Served]) -> Non
         }"""
     )
     assert worst < 200.0  # [ms]
+
+
+def test_a_vehicle_has_the_colours_of_the_page_at_once(visitor: Visitor) -> None:
+    """Two frames after another theme is chosen, its ground is that of the panel around it."""
+    page = visitor.page
+    _moving(visitor)
+    grounds = page.evaluate(
+        """async () => {
+          const canvas = document.querySelector(".vehicle canvas");
+          const choice = document.querySelector("[aria-label=Colours]");
+          const frame = () => new Promise(done => requestAnimationFrame(done));
+          const found = [];
+          for (const theme of ["dark", "light"]) {
+            choice.value = theme;
+            choice.dispatchEvent(new Event("change", { bubbles: true }));
+            while (document.documentElement.dataset.theme !== theme) await frame();
+            for (let i = 0; i < 3; i += 1) await frame();
+            const [red, green, blue] = canvas.getContext("2d").getImageData(5, 5, 1, 1).data;
+            const { backgroundColor } = getComputedStyle(document.querySelector("section.vehicle"));
+            found.push([`rgb(${red}, ${green}, ${blue})`, backgroundColor]);
+          }
+          return found;
+        }"""
+    )
+    assert [drawn for drawn, _ in grounds] == [around for _, around in grounds]
+    assert grounds[0] != grounds[1]
+
+
+@pytest.mark.parametrize("study", ["train", "half-car", "seat"])
+def test_what_is_written_over_a_small_picture_covers_no_body(
+    study: str, served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    """On a telephone: above the vehicle, below the controls, is nothing but words and the scale."""
+    visitor = visitors(served, viewport={"width": 420, "height": 900}).visit()
+    page = visitor.page
+    visitor.open(EXAMPLES / f"{study}.toml")
+    page.wait_for_selector(f"text={study}.toml is open")
+    _moving(visitor)
+    bodies = """() => {
+      const canvas = document.querySelector(".vehicle canvas");
+      const probe = document.createElement("i");
+      probe.style.color = "var(--body)";
+      document.body.append(probe);
+      const body = getComputedStyle(probe).color.match(/\\d+/g).map(Number);
+      const { data, width, height } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const is = (i) => body.every((value, channel) => data[4 * i + channel] === value);
+      for (let i = 0; i < width * height; i += 1) if (is(i)) return Math.floor(i / width);
+      return null;
+    }"""
+    top = page.evaluate(bodies)
+    assert top is not None
+    assert top > 84 if study == "seat" else top > 96, top  # [px], where the last line of words ends

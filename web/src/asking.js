@@ -136,7 +136,7 @@ export const isUnauthorised = (error) => error instanceof Refusal && error.statu
 
 /** Whether the free values of the study that is open are being chosen: questions about its designs come then.
  * @param {State} state */
-const isBeingChosen = ({ choosing, history }) => choosing !== null && choosing === history.present.study;
+export const isBeingChosen = ({ choosing, history }) => choosing !== null && choosing === history.present.study;
 
 /** Waits until the study that is open has the values that it begins with, so that what is asked then is about them;
  * gives the document as it is then, or null if another one has been opened. @param {Store} store

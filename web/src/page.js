@@ -197,6 +197,7 @@ function Tabs({ store, api }) {
   const state = store.get();
   const { view, history: { present: { layout } } } = state;
   const shown = TABS.find(({ key }) => key === view.tab) ?? TABS[0];
+  useEffect(() => bringIntoRow(document.getElementById(`tab-${shown.key}`)), [shown.key]);
   /** @param {KeyboardEvent} event */
   function turn(event) {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
@@ -217,6 +218,12 @@ function Tabs({ store, api }) {
         ? html`<${SearchFirst} layout=${layout} />`
         : html`<${shown.Panel} store=${store} api=${api} />`}</div>
   </section>`;
+}
+
+/** Scrolls a row of tabs, and nothing else, so that one of them is seen. @param {HTMLElement | null} tab */
+function bringIntoRow(tab) {
+  const row = tab?.parentElement;
+  if (row) row.scrollLeft = tab.offsetLeft - row.offsetLeft - (row.clientWidth - tab.offsetWidth) / 2;
 }
 
 const THEMES = /** @type {const} */ (["auto", "light", "dark"]);

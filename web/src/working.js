@@ -22,9 +22,13 @@ export async function optimise(store, api, asked) {
   try {
     if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
       const title = `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`;
-      await begin(store, api, { kind: "optimise", title, ...body });
+      const id = await begin(store, api, { kind: "optimise", title, ...body });
+      void ended(store, id).then((job) => {
+        if (job?.result && store.get().history.present.study === study)
+          store.say(takeOptima(store, job.result.designs, null, study), "taken");
+      });
       store.look({ tab: "work" });
-      return "Under way: see Jobs.";
+      return "Under way: see Jobs. The values are taken when it is done, unless the study changes meanwhile.";
     }
     const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);
     if (store.get().history.present.study !== study)

@@ -145,9 +145,18 @@ export function indicesOf(state) {
     known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
 }
 
+/** Whether an index is named by words, which its title has too. @param {string} symbol */
+export const isWord = (symbol) => /^[a-z]+(-[a-z]+)*$/.test(symbol);
+
+/** An index as short as it can be named. @param {{symbol: string, title: string}} index */
+export const indexName = ({ symbol, title }) => (isWord(symbol) ? title : symbol);
+
+/** An index in words, after its symbol if it has one. @param {{symbol: string, title: string}} index
+ * @param {string} between */
+export const indexWords = (index, between) => [...new Set([indexName(index), index.title])].join(between);
+
 /** What a `Select` of indices has to choose from. @param {{symbol: string, title: string}[]} indices */
-export const indexChoices = (indices) => indices.map(({ symbol, title }) =>
-  [symbol, title === symbol ? symbol : `${symbol}: ${title}`]);
+export const indexChoices = (indices) => indices.map((index) => [index.symbol, indexWords(index, ": ")]);
 
 /** What the answers of designs are made of: each value, and each limit. @param {any} value
  * @returns {import("../parts/doubts.js").Member[]} */

@@ -5,6 +5,7 @@ import { Chip, Select, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { answerOf } from "../questions.js";
 import { entryAt, indicesIn } from "../state/document.js";
+import { indexChoices, indexName } from "./answers.js";
 import { Entry } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -36,7 +37,7 @@ export function AskedPanel({ store }) {
     <div class="row" role="group" aria-label="Indices of the study">
       ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
         on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
-        set=${() => toggle(symbol)}>${symbol}<//>`)}
+        set=${() => toggle(symbol)}>${indexName({ symbol, title })}<//>`)}
     </div>
     ${limits.map((limit) => {
       const of = limit.path.join(".");
@@ -73,11 +74,12 @@ function indexNames(state) {
   return [...known, ...[...new Set(own)].map((symbol) => ({ symbol, title: symbol }))];
 }
 
-/** What a limit can be put on. @param {State} state */
+/** What a limit can be put on, for a `Select`. @param {State} state */
 function limitable(state) {
   const layouts = Object.values(answerOf(state, "check").value?.layouts ?? {});
   const struts = Object.keys(/** @type {any} */ (layouts[0])?.mounts ?? {});
-  return [...indexNames(state).map(({ symbol }) => symbol), ...struts.map((strut) => `${STIFFNESS}.${strut}`)];
+  return [...indexChoices(indexNames(state)), ...struts.map((strut) => [`${STIFFNESS}.${strut}`,
+    `static stiffness${struts.length > 1 ? ` of ${strut.replaceAll("_", " ")}` : ""}`])];
 }
 
 /** The limits of the study, as the library lists them. @param {State} state @returns {Limit[]} */

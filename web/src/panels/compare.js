@@ -76,8 +76,9 @@ function Comparison({ state, answer, compared }) {
       ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>
         ${columns.map(({ numbers }, i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
   <//>
-  <p class="quiet">In per cent of ${columns[0].name}, all on the road of this study, and on the same roads where it
-    is simulated; ± is the standard error of a difference itself. Bold: the best, and what is as good.</p>`;
+  <p class="quiet">Differences in per cent of ${columns[0].name}. All designs are on the road of this study, and where
+    they are simulated on the same roads; ± is the standard error of the difference. Bold: the best, and what is as
+    good.</p>`;
 }
 
 /** A value, and what lies between it and the first one's.

@@ -3,11 +3,12 @@
 import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
 import { methodChoice } from "../methods.js";
-import { answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
+import { allDesigns, answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
 import { isSearched, searchedLayouts, unchosenIn } from "../library.js";
 import { quantity, takenApart } from "../state/scale.js";
+import { isBeingChosen } from "../asking.js";
 import { AskedPanel } from "./asked.js";
-import { indicesOf } from "./answers.js";
+import { indexWords, indicesOf, isWord } from "./answers.js";
 import { marginTold } from "./margins.js";
 import { problemsOf } from "./values.js";
 
@@ -72,14 +73,14 @@ function Goal({ store }) {
   const state = store.get();
   const indices = indicesOf(state);
   const goal = indices.find(({ symbol }) => symbol === goalOf(state));
-  const answer = goal ? [...new Set([goal.symbol, goal.title])].join(", ") : "None";
+  const answer = goal ? indexWords(goal, ", ") : "None";
   return html`<details class="menu step">
     <summary id="step-2"><small>2 Goal</small><b title=${answer}>${answer}</b></summary>
     <div class="menu-body">
       <fieldset><legend>Index to be minimised</legend>
         ${indices.map(({ symbol, title }) => html`<label key=${symbol}><input type="radio" name="goal" value=${symbol}
           checked=${symbol === goal?.symbol} onChange=${() => store.look({ index: symbol })} />
-          ${title === symbol ? "" : title} <b>${symbol}</b></label>`)}</fieldset>
+          ${title} ${!isWord(symbol) && title !== symbol && html`<b>${symbol}</b>`}</label>`)}</fieldset>
       <${Select} label="Method" ...${methodChoice(store)} />
       <${AskedPanel} store=${store} />
     </div></details>`;
@@ -102,16 +103,23 @@ function Verdict({ state, blank }) {
   const told = failed || verdict?.sentence || "Under way";
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
     data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>
-    <div class="row"><${Stale} layouts=${staleLayouts(state)} />
+    <div class="row"><${ToOptimise} state=${state} />
       <${Caveats} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></div></section>`;
 }
 
-/** That layouts are compared at values optimised for another problem, and the button that optimises all of them.
- * @param {{layouts: string[]}} props */
-const Stale = ({ layouts }) => layouts.length > 0 && html`<button type="button" class="stale"
-  title=${`Values of ${layouts.join(", ")} were optimised before the study or its goal changed.`}
-  onClick=${() => /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>Values
-  not re-optimised: <u>optimise all layouts</u></button>`;
+/** That layouts are compared at values that nobody has chosen, or that are optimal for another problem, and the button
+ * that optimises all of them. @param {{state: State}} props */
+function ToOptimise({ state }) {
+  const stale = staleLayouts(state);
+  const unchosen = allDesigns(state.history.present).filter(({ layout, ...design }) => !isSearched(state, layout)
+    && unchosenIn(state, { layout, ...design }).length > 0);
+  if (stale.length + unchosen.length === 0 || isBeingChosen(state)) return null;
+  const title = stale.length > 0 ? `Values of ${stale.join(", ")} were optimised before the study or its goal changed.`
+    : `Nobody has chosen values of ${unchosen.map(({ layout }) => layout).join(", ")}.`;
+  return html`<button type="button" class="stale" title=${title} onClick=${() =>
+    /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>${
+    stale.length > 0 ? "Values not re-optimised" : "Values not chosen"}: <u>optimise all layouts</u></button>`;
+}
 
 /** The caveats, as many as there is room for; the others by a button that counts them.
  * @param {{caveats: Caveat[]}} props */

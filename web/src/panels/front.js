@@ -9,7 +9,7 @@ import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
 import { printed, rounded, shown, times, unitFor, withUnit } from "../state/scale.js";
 import { takeAndTell } from "../working.js";
-import { indexChoices, indicesOf, signed } from "./answers.js";
+import { indexChoices, indicesOf, isWord, signed } from "./answers.js";
 import { Files } from "./files.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
@@ -28,7 +28,6 @@ import { Files } from "./files.js";
  * @typedef {{front: Front, point: Point, number: number, isKnee: boolean}} Entry */
 
 const ALL = "all fronts";
-const WORD = /^[a-z]+(-[a-z]+)*$/; // an index that is named by words
 
 /** The indices of which a front can be: those of the study, first those of its trade-off; else all that there are.
  * @param {State} state @returns {{symbol: string, title: string}[]} */
@@ -133,7 +132,7 @@ function declared(indices, drawn, fronts, colours) {
   /** @param {string} symbol */
   const axis = (symbol) => {
     const { title = "", unit = "", factor = 1 } = indices.find(({ index }) => index === symbol) ?? {};
-    return { what: WORD.test(symbol) ? title : `${title} ${symbol}`, unit, size: 1 / factor, padded: true };
+    return { what: isWord(symbol) ? title : `${title} ${symbol}`, unit, size: 1 / factor, padded: true };
   };
   const all = fronts.map((front) => entriesOf(front).filter(({ point: { values } }) =>
     drawn.every((index) => typeof values[index] === "number")));
@@ -207,7 +206,7 @@ function Card({ entry, fronts, indices, baseline, take }) {
     <//>
     <p>${valuesIn(point.texts)}</p>
     ${other && html`<p>${sentenceOf(point, other, indices)}</p>`}
-    <button type="button" onClick=${take}>Take this point</button>
+    <button type="button" class="edged" onClick=${take}>Take this point</button>
   </section>`;
 }
 

@@ -112,6 +112,7 @@ function Open({ store, api }) {
   };
   return html`<${DropDown} title="Open" id="open-menu" onOpen=${look}>
     <label class="file">A study file or record… <input type="file" multiple onChange=${openFiles} /></label>
+    ${examples.length > 0 && html`<b class="legend">Examples</b>`}
     ${examples.map(({ name, title }) => html`<button type="button" key=${name}
       onClick=${(/** @type {Event} */ event) => openExample(event, name)}>${title || name}</button>`)}
   <//>`;

@@ -28,7 +28,6 @@ const LONGEST = 100; // [ms] that the clock goes on between two frames
 const SCRUB = 1 / 200; // [s] of a pixel that the picture is dragged
 const NUDGE = 1 / 60; // [s] of a key
 const SMALLEST = 40; // [px] of a picture
-const OFTEN = 30; // frames between two looks at the colours
 
 /** The whole panel. @param {{store: Store, api?: unknown}} props */
 export function MotionPanel({ store }) {
@@ -165,7 +164,8 @@ function scrub(event, end) {
 /** Draws until it is ended. @typedef {{show: (shown: Shown) => void, end: () => void}} Film */
 /** What a film has at hand: `due` where it must draw, `seen` where somebody sees it.
  * @typedef {{shown: Shown | null, made: Layout | null, styles: {[kind: string]: import("../vehicles/paint.js").Style},
- * chosen: string | null, state: State | null, last: number, frames: number, due: boolean, seen: boolean}} Stage */
+ * chosen: string | null, state: State | null, theme?: string, last: number, frames: number, due: boolean,
+ * seen: boolean}} Stage  `theme`: the colours that `styles` are of */
 
 /** A picture that follows the clock, and that moves the clock while it is not held.
  * @param {HTMLCanvasElement} canvas @param {Store} store @returns {Film} */
@@ -222,7 +222,7 @@ function fitTo(canvas, stage, range) {
   render(canvas, stage); // at once: what has another size is empty, and the next frame too late
 }
 
-/** Sees what has changed of the page: the selected element, whether it is held, now and then the colours.
+/** Sees what has changed of the page: the selected element, whether it is held, the colours.
  * @param {HTMLCanvasElement} canvas @param {Stage} stage @param {State} state */
 function look(canvas, stage, state) {
   if (state !== stage.state) {
@@ -232,10 +232,10 @@ function look(canvas, stage, state) {
     stage.state = state;
   }
   stage.frames += 1;
-  if (stage.frames % OFTEN !== 0) return;
-  const styles = stylesOf(canvas, stage.shown?.own);
-  if (["wire", "own"].every((kind) => styles[kind].stroke === stage.styles[kind].stroke)) return;
-  stage.styles = styles;
+  const { theme } = document.documentElement.dataset;
+  if (theme === stage.theme) return;
+  stage.theme = theme;
+  stage.styles = stylesOf(canvas, stage.shown?.own);
   stage.due = true;
 }
 

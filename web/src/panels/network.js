@@ -20,7 +20,7 @@ const MARGIN = 14;
 const TERMINAL = 1.6;
 const [SMALLEST, LARGEST] = [0.7, 1.7]; // [px] a point of the drawing
 const MANY = 8; // elements from where a drawing may be laid across the page, and has no values in it
-const VALUE = 50; // [pt] room of a value in the drawing
+const VALUE = 58; // [pt] room of a value in the drawing
 const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store, api: Api}} props */

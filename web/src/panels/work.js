@@ -61,7 +61,9 @@ function Begin({ store, api, kind }) {
   const lacking = kind.lacks?.(state);
   return html`<form class="begin" onSubmit=${formHandler(async (form) => {
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
-    setTold(await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) }));
+    const told = await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) });
+    setTold(told);
+    if (!told) requestAnimationFrame(() => document.querySelector(".jobs .job")?.scrollIntoView({ block: "nearest" }));
   })}>
     <h3>${kind.title}</h3>
     <p class="quiet">${kind.sentence}</p>

@@ -30,7 +30,7 @@ export function Moving({ what, since = null }) {
     const waiting = setTimeout(() => setMoves(true), AT_LAST);
     return () => clearTimeout(waiting);
   }, []);
-  return html`<span class="moving">${what}${moves
+  return html`<span class="moving"><span>${what}</span>${moves
     && html` <progress aria-label=${what}></progress> <${Clock} since=${since ?? begun} />`}</span>`;
 }
 

@@ -1,5 +1,6 @@
 // What is written over the picture: how the vehicle stands, how large motions are drawn, whose outline is dashed.
 
+import { NARROW } from "./layout.js";
 import { inWords } from "./naming.js";
 import { liftOf } from "./scene.js";
 import { line } from "./symbols.js";
@@ -9,7 +10,7 @@ import { line } from "./symbols.js";
 /** @import { Shape } from "./symbols.js" */
 
 const BARS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 40, 50, 100, 200, 500, 1000]; // [mm]
-const [SHORTEST, NARROW] = [22, 500]; // [px]
+const SHORTEST = 22; // [px]
 const STILL = 1e-9; // [rad]
 
 /** @param {Layout} made @param {{moment: Moment, motion: Motion, passing: number}} moved
@@ -50,7 +51,7 @@ function standing({ scene: { main, column } }, { moment: { pose }, motion }, lar
 /** A length upwards. @param {Layout} made @param {boolean} narrow @returns {Shape[]} */
 function scaleBar({ lift, width }, narrow) {
   const length = BARS.find((each) => (each / 1000) * lift >= SHORTEST) ?? BARS[BARS.length - 1];
-  const [x, y, tall] = [width - 32, narrow ? 96 : 58, (length / 1000) * lift];
+  const [x, y, tall] = [width - 32, narrow ? 56 : 58, (length / 1000) * lift];
   return [
     line([[x - 4, y], [x + 4, y]], "bar"), line([[x, y], [x, y + tall]], "bar"),
     line([[x - 4, y + tall], [x + 4, y + tall]], "bar"),
@@ -62,7 +63,7 @@ function scaleBar({ lift, width }, narrow) {
  * @param {number} below so many lines @returns {Shape[]} */
 function legend({ height, scene }, { own, other }, narrow, below) {
   const body = scene.column && scene.tracks.length > 0 ? "body on " : "";
-  const y = scene.column ? Math.max(narrow ? 150 : 112, 0.31 * height) : (narrow ? 62 : 20) + 16 * below;
+  const y = narrow ? 62 + 16 * below : scene.column ? Math.max(112, 0.31 * height) : 20 + 16 * below;
   const text = (/** @type {number} */ at, /** @type {string} */ words) =>
     /** @type {Shape} */ ({ kind: "text", x: 36, y: at, text: words, class: "text" });
   const otherWords = body ? `on ${other}, same road` : `dashed: ${other}, same road`;

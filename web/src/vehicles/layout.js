@@ -25,7 +25,9 @@ import { planOf, reachOf } from "./symbols.js";
 
 const TIMES = [1, 1.5, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 40, 60, 80, 100, 150, 200, 300, 500, 1000];
 const USUAL = 6; // times, where nothing moves
-const HEADER = 40; // [px] above, for what is written there, and ...
+export const NARROW = 500; // [px] of a picture in which words stand below the controls, not beside them
+const HEADER = 40; // [px] above, for what is written there, ...
+const [HIGH, HIGHER] = [86, 112]; // ... below the controls, above a column and above all else, and ...
 const CLEAR = 14; // ... above a column beside it
 const BELOW = 0.13; // of the height, below the ground
 const DIP = 0.11; // of the height, of a road at most
@@ -96,11 +98,11 @@ function frameOf(scene, { width, height }) {
   const axles = scene.tyres.map(({ x }) => x);
   const [first, last] = [Math.min(...xs, ...axles), Math.max(...xs, ...axles)];
   const base = height * (1 - BELOW);
-  const room = base - HEADER;
+  const room = base - headerOf(scene, width);
   if (scene.column) {
     const storeys = scene.bodies.reduce((most, { level }) => Math.max(most, level), 0);
     const radius = Math.max(18, Math.min((storeys > 1 ? 0.075 : 0.098) * height, 60));
-    const [metre, middle] = [Math.max(18, Math.min(0.098 * height, 60)) / WHEEL, width * (width < 500 ? 0.5 : 0.42)];
+    const [metre, middle] = [Math.max(18, Math.min(0.098 * height, 60)) / WHEEL, width * (width < NARROW ? 0.5 : 0.42)];
     return { width, height, metre, base, radius, project: (x, _, z) => [middle + (x - first) * metre, base - z] };
   }
   const car = scene.silhouette ? scene.wheelbase : 0;
@@ -122,6 +124,12 @@ function frameOf(scene, { width, height }) {
       base - (y - middleY + wide / 2) * SIDE * metre - z]
     : (x, _, z) => [width / 2 + (x - centre) * metre, base - z];
   return { width, height, metre, base, radius, project };
+}
+
+/** The room above the vehicle for words [px]. @param {Scene} scene @param {number} width */
+function headerOf({ column, tracks }, width) {
+  if (width < NARROW) return column ? HIGH : HIGHER;
+  return column && tracks.length > 0 ? CLEAR : HEADER;
 }
 
 /** Whether motions that are drawn so many times as large leave all in the picture, and each strut its length.
@@ -188,8 +196,7 @@ function levelsOf(scene, frame, range, lift) {
   const bottom = wheels || rigid ? 2 * radius + 4 : beams ? radius + 4 : 0;
   if (scene.silhouette && scene.main) return carLevels(scene, frame);
   const far = scene.oblique ? spread(scene.bodies.map(({ y }) => y)) * SIDE * frame.metre : 0;
-  const header = scene.column && scene.tracks.length > 0 && frame.width >= 500 ? CLEAR : HEADER;
-  const room = base - far - header - lift * range.up;
+  const room = base - far - headerOf(scene, frame.width) - lift * range.up;
   /** @param {Body} body */
   const thickness = (body) => {
     const { kind, mass, pitch } = body;
@@ -236,7 +243,7 @@ function carLevels(scene, { radius, metre }) {
     of: (/** @type {Body} */ { kind, level }) => {
       if (kind === "wheel") return { z: radius, thick: 2 * radius };
       if (kind === "occupant") return { z: radius + 39 * unit, thick: 28 * unit };
-      return { z: radius + (scene.oblique ? 39 : 43) * unit + (level > 1 ? 24 * unit : 0), thick: 0 };
+      return { z: radius + 37 * unit + (level > 1 ? 24 * unit : 0), thick: 0 };
     },
   };
 }

@@ -121,3 +121,31 @@ def test_how_many_elements_and_whether_bridges_stay_while_the_page_is_drawn_anew
     step_slider_and(searching, "document.querySelector('form.begin input[type=checkbox]:not([name])').click();")
     searching.settled()
     assert (most.input_value(), bridges.is_checked()) == ("2", True)
+
+
+def test_a_study_without_a_free_network_gets_one(visitor: Visitor) -> None:
+    """From the layouts to the form of a search: in parallel with the spring that carries the vehicle, in one step."""
+    page = visitor.page
+    visitor.settled()
+    page.get_by_role("button", name="More networks").click()
+    page.get_by_role("button", name="Add a layout with a free network").click()
+    visitor.wait_for_text("k | any")
+    form = page.locator("form.begin", has_text="Search for the best network")
+    form.locator("select[name=layout]").wait_for()
+    assert form.locator("select[name=layout]").input_value() == "any"
+    assert form.get_by_role("button", name="Begin").is_enabled()
+    visitor.settled()
+    assert page.locator(".problems, .element.unknown").count() == 0
+    page.get_by_role("button", name="Undo").click()
+    assert page.locator(".answers .pick", has_text="any").count() == 0
+
+
+def test_a_value_in_the_si_unit_is_shown_in_one_that_suits_it(visitor: Visitor) -> None:
+    """As a search gives them: no zeros that are cut off in the field."""
+    page = visitor.page
+    entry = page.locator("[id='entry elements.k']")
+    entry.fill("10000000.0 N/m")
+    page.keyboard.press("Enter")
+    page.get_by_label("Title of the study").focus()
+    page.wait_for_function("() => document.getElementById('entry elements.k').value === '10 MN/m'")
+    assert entry.get_attribute("title") == "10000000.0 N/m"

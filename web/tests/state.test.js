@@ -194,6 +194,10 @@ test("quantities come apart and together as they are written", () => {
   assert.equal(brief("7544.184883044672 N s/m"), "7544.2 N s/m");
   assert.equal(brief("181.75 kg"), "181.75 kg");
   assert.equal(brief("3.19238 kN s/m"), "3.1924 kN s/m");
+  const about = { units: { "N/m": [{ least: 1e6, most: 1e12, factor: 1e-6, unit: "MN/m" }] } };
+  assert.equal(brief("10000000.0 N/m", about, "N/m"), "10 MN/m");
+  assert.equal(brief("3200000 N/m", about, "kg"), "3200000 N/m");
+  assert.equal(brief("3200 N/m", about, "N/m"), "3200 N/m"); // as it was written
   assert.equal(shown(-6.4525e-5), "−6.4525·10⁻⁵");
   assert.equal(shown(null), "–");
 });

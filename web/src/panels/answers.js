@@ -11,6 +11,7 @@ import { html, useMemo, useState } from "../parts/html.js";
 import { layoutColour } from "../parts/colours.js";
 import { useLate, useShown } from "../parts/shown.js";
 import { Sketch, sketchesOf } from "./sketch.js";
+import { toSearch } from "./search.js";
 import { problemsOf } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -237,7 +238,7 @@ function Layouts({ store }) {
       <button type="button" disabled=${layouts.length < 2}
         onClick=${() => store.change({ type: "layoutRemoved" })}>Delete it</button>
     <//>`}
-    <button type="button" onClick=${() => store.look({ tab: "work" })}>More networks</button>
+    <button type="button" onClick=${() => toSearch(store)}>More networks</button>
     <button type="button" onClick=${() => store.look({ tab: "compare" })}>Compare</button>
   </div>`;
 }

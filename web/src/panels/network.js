@@ -339,7 +339,7 @@ function valueOf(state, name) {
   const entry = own(study.elements, name);
   const chosen = own(own(values, layout), name);
   if (isRange(entry)) return chosen === undefined ? "free" : briefIn(state.about, chosen, unitOf(state, name));
-  return typeof entry === "string" ? brief(entry) : "";
+  return typeof entry === "string" ? brief(entry, state.about, kindOf(state, name)?.unit) : "";
 }
 
 /** @param {Path} a @param {Path} b */

@@ -5,10 +5,12 @@ import { IndexChips, Select, Table, useChoice } from "../parts/controls.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { searchedLayouts } from "../library.js";
+import { kindOf, searchedLayouts, treeOf } from "../library.js";
+import { quickMethod } from "../methods.js";
+import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf } from "../questions.js";
-import { entryAt } from "../state/document.js";
+import { entryAt, textOf } from "../state/document.js";
 import { estimated, printed, rounded, scaled, shown, times, unitFor } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indicesOf, percent } from "./answers.js";
@@ -28,10 +30,35 @@ const FRONT = "Front";
 export function toSearch(store) {
   store.look({ tab: "work", tall: true });
   requestAnimationFrame(() => {
-    const field = /** @type {HTMLElement | null} */ (document.querySelector(".begin [name=layout]"));
+    const field = /** @type {HTMLElement | null} */ (document.querySelector(".begin :is([name=layout], .remedy)"));
     field?.closest("form")?.scrollIntoView({ block: "start" });
     field?.focus();
   });
+}
+
+/** The free network that a study gets: of few elements, so that a search takes minutes, within bounds that are wide for
+ * any vehicle. */
+const FREE = { network: 3, springs: { from: "1 kN/m", to: "10 MN/m" }, dampers: { from: "10 N s/m", to: "1 MN s/m" },
+  inerters: { from: "10 g", to: "100 t" } };
+
+/** Adds a layout whose strut is the spring that carries the vehicle with a free network in parallel, and shows what can
+ * be searched in it. @param {Store} store */
+export function addFreeNetwork(store) {
+  const state = store.get();
+  const { present } = state.history;
+  const { elements = {}, layouts = {}, study = {} } = present.study;
+  const tree = treeOf(state, textOf(present));
+  const carries = tree?.kind === "parallel" && tree.parts.find((part) => part.kind === "element"
+    && kindOf(state, part.name)?.key === "spring");
+  const name = freshName("any", Object.keys(elements));
+  const gesture = `free ${Date.now()}`;
+  store.change({ type: "layoutAdded", name: freshName("any", Object.keys(layouts)) }, gesture);
+  store.change({ type: "drawn", text: carries ? `${written(carries)} | ${name}` : name, added: { [name]: FREE } },
+    gesture);
+  if (study.optimise === undefined)
+    store.change({ type: "placed", place: ["study", "optimise"], value: quickMethod(state)?.name }, gesture);
+  store.dispatch({ type: "rested" });
+  toSearch(store);
 }
 
 /** What stands in the place of what needs a network. @param {{layout: string}} props */

@@ -235,7 +235,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      names=${names} told=${free ? briefIn(store.get().about, text, unit) : undefined}
+      names=${names} told=${free ? briefIn(state.about, text, unit) : brief(text, state.about, unit)}
       drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
         store.dispatch({ type: "rested" })))}
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />

@@ -25,20 +25,24 @@ export function completed(typed, before, names = {}) {
   return named ?? (takenApart(typed)?.unit === "" ? `${typed} ${unit}`.trim() : typed);
 }
 
-/** A quantity of many digits with five of them, any other as it was written. @param {string} text */
-export function brief(text) {
+/** A quantity of many digits with five of them, any other as it was written; the long one in the unit that suits it,
+ * if it is in the SI unit. @param {string} text @param {any} [about] @param {string} [unit] @returns {string} */
+export function brief(text, about = null, unit = "") {
   const apart = takenApart(text);
-  const long = apart !== null && /\d[\d.]{6,}/.test(text);
-  return long ? `${Number(apart.number.toPrecision(5))} ${apart.unit}`.trim() : text;
+  if (apart === null || !/\d[\d.]{6,}/.test(text)) return text;
+  return apart.unit === unit ? briefIn(about, text, unit) : inFive(apart);
 }
 
+/** @param {{number: number, unit: string}} quantity */
+const inFive = ({ number, unit }) => `${Number(number.toPrecision(5))} ${unit}`.trim();
+
 /** The same of a value that was found, in the unit that suits it if it stands in the SI unit.
- * @param {any} about @param {string} text @param {string} unit */
+ * @param {any} about @param {string} text @param {string} unit @returns {string} */
 export function briefIn(about, text, unit) {
   const apart = takenApart(text);
   if (apart === null || apart.unit !== unit) return brief(text);
   const own = unitFor(about, [apart.number], unit);
-  return `${Number((apart.number * own.factor).toPrecision(5))} ${own.unit}`.trim();
+  return inFive({ number: apart.number * own.factor, unit: own.unit });
 }
 
 /** A number with four digits or fewer, as a person writes it. @param {number} number */

@@ -167,7 +167,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         asked.locator("[name=value]").fill(value)
         asked.get_by_role("button", name="Add").click()
         page.wait_for_selector(told)  # which moves the button: what is pressed meanwhile misses it
-    entry = page.get_by_label("static-stiffness.strut at least", exact=True)
+    entry = page.get_by_label("static stiffness at least", exact=True)
     entry.fill("60 kN/m")
     entry.press("Enter")
     page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")
@@ -185,6 +185,24 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         page.get_by_role("button", name=f"Delete the limit: {name}").click()
     page.wait_for_selector(".limits", state="detached")
     assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
+
+
+def test_a_limit_on_several_struts_names_none_of_them(visitor: Visitor) -> None:
+    """Which strut is the nearest to it, each layout says of itself."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "half-car.toml")
+    page.wait_for_selector("text=half-car.toml is open")
+    visitor.chosen()
+    page.get_by_role("group", name="Struts").get_by_role("button", name="rear", exact=True).click()
+    page.fill("#network-text", "k | c_r")
+    visitor.settled()
+    page.click("#step-2")
+    asked = page.locator(".asked")
+    asked.locator("[name=of]").select_option("suspension-travel")
+    asked.locator("[name=value]").fill("5 mm")
+    asked.get_by_role("button", name="Add").click()
+    page.locator(".limits li", has_text="front strut, at most 5 mm").wait_for()
+    asked.get_by_label("suspension travel at most", exact=True).wait_for()
 
 
 def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor) -> None:

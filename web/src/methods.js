@@ -5,7 +5,7 @@
  * averages: boolean}} Method */
 
 /** @param {Pick<State, "about">} state @returns {Method[]} */
-export const methodsOf = ({ about }) => about?.methods ?? [];
+const methodsOf = ({ about }) => about?.methods ?? [];
 
 /** Whether it sees neither friction nor gaps: its answers come at once. @param {Method | undefined} method */
 export const isQuick = (method) => method?.sees === "neither";

@@ -21,7 +21,7 @@ import { printed, shown } from "./state/scale.js";
  * at?: number | null, read?: (at: number | null) => void}} PlotProps */
 
 /** A colour of curves, for styles. @param {string} token */
-export const curveColour = (token) => `var(--${token})`;
+const curveColour = (token) => `var(--${token})`;
 
 /** @param {PlotProps} props */
 export function Plot({ plot, current = true, children, switches = [], cursor = null, table, ...more }) {

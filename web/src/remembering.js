@@ -14,7 +14,7 @@ const KEPT = "inerter.document";
 const LINK = "state";
 
 /** The document and what is looked at, as text for a link. @param {Document} document @param {Partial<View>} view */
-export async function packed(document, view) {
+async function packed(document, view) {
   const bytes = new Blob([JSON.stringify({ ...document, view })])
     .stream()
     .pipeThrough(new CompressionStream("deflate-raw"));

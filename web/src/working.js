@@ -126,10 +126,12 @@ export async function beginAtBest(store, api, gesture = null) {
 /** The best designs of all layouts; none where nothing is free, or where they take longer than a person waits.
  * @param {Api} api @param {any} study @param {string} index @param {string} method @returns {Promise<any[]>} */
 async function bestAtFirst(api, study, index, method) {
-  const parts = await api.post("study/parts", { study });
+  const [first] = Object.keys(study.layouts ?? {});
+  const [parts, small] = await Promise.all([api.post("study/parts", { study }),
+    isSmall(api, study, first).catch(() => null)]); // null where its network is free
   const layouts = Object.keys(parts.layouts).filter((name) => parts.layouts[name].free_networks.length === 0);
   if (layouts.every((name) => parts.layouts[name].free.length === 0)) return [];
-  if (!(await isSmall(api, study, layouts[0]))) return [];
+  if (!(small ?? await isSmall(api, study, layouts[0]))) return [];
   const body = { study, layouts, indices: [index], method, methods: [method] };
   return (await postNow(api, "panel/optimise", "opening", body)).designs;
 }

@@ -297,6 +297,7 @@ test("a drag leaves no timers behind: one for each panel that waits until it res
   await new Promise((done) => setTimeout(done, 5));
   const own = globalThis.setTimeout;
   let timers = 0;
+  const begun = Date.now();
   /** @type {any} */ (globalThis).setTimeout = (/** @type {any} */ act, /** @type {number} */ after) => {
     timers += after > 100 ? 1 : 0;
     return own(act, after);
@@ -309,5 +310,6 @@ test("a drag leaves no timers behind: one for each panel that waits until it res
   } finally {
     globalThis.setTimeout = own;
   }
-  assert.ok(timers > 0 && timers <= 4, `${timers} timers of 50 steps`);
+  const rests = 1 + Math.ceil((Date.now() - begun) / 300); // of each of the two panels, on a machine however slow
+  assert.ok(timers > 0 && timers <= 2 * rests && timers < 50, `${timers} timers of 50 steps`);
 });

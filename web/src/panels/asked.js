@@ -22,8 +22,9 @@ export function AskedPanel({ store }) {
   const { study } = state.history.present;
   const asked = indicesIn(study);
   const limits = limitsOf(state);
+  const choices = limitable(state);
   /** @type {{of: string, quantity: string}[]} */
-  const told = answerOf(state, "decision").value?.rows[0]?.limits ?? [];
+  const told = (answerOf(state, "decision").value?.rows ?? []).flatMap((/** @type {any} */ { limits }) => limits ?? []);
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
     ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
@@ -41,7 +42,9 @@ export function AskedPanel({ store }) {
     </div>
     ${limits.map((limit) => {
       const of = limit.path.join(".");
-      const label = `${told.find((each) => each.of === of)?.quantity ?? of} ${limit.sense.replace("_", " ")}`;
+      const quantities = [...new Set(told.filter((each) => each.of === of).map(({ quantity }) => quantity))];
+      const what = quantities.length === 1 ? quantities[0] : choices.find(([value]) => value === of)?.[1] ?? of;
+      const label = `${what} ${limit.sense.replace("_", " ")}`;
       const key = `${of} ${limit.sense}`;
       return html`<p class="row" key=${key}>${label} <${Entry} id=${`limit ${key}`} label=${label}
         text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
@@ -54,7 +57,7 @@ export function AskedPanel({ store }) {
       place({ path: of.split("."), sense, value }, value);
       /** @type {HTMLFormElement} */ (currentTarget).reset();
     })}>
-      <${Select} label="Constraint on" name="of" choices=${limitable(state)} />
+      <${Select} label="Constraint on" name="of" choices=${choices} />
       <${Select} name="sense" aria-label="Which side"
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
       <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"

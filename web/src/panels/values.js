@@ -151,7 +151,7 @@ const written = (value) => (value !== "" && Number.isFinite(Number(value)) ? Num
 
 /** The size of a text in SI, or null where it is not known.
  * @param {State} state @param {string} text @param {string} unit */
-export function sizeOf(state, text, unit) {
+function sizeOf(state, text, unit) {
   const apart = takenApart(text);
   const one = apart && oneOf(state, apart.unit, unit);
   return apart && one !== null ? apart.number * one : null;

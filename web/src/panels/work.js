@@ -26,7 +26,7 @@ import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js"
  * remedy?: {label: string, act: (store: Store) => void}}} Kind */
 
 /** @type {Kind[]} */
-export const KINDS = [
+const KINDS = [
   { kind: "run", title: "Run the whole study", body: () => ({}), Result: RunResult,
     sentence: "As inerter run does: all layouts and indices, with report, tables and figures." },
   { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle,

@@ -46,7 +46,7 @@ export function briefIn(about, text, unit) {
 }
 
 /** A number with four digits or fewer, as a person writes it. @param {number} number */
-export const shortest = (number) => String(Number(number.toPrecision(4)));
+const shortest = (number) => String(Number(number.toPrecision(4)));
 
 /** @param {number} value @param {number} lower @param {number} upper */
 export function positionOf(value, lower, upper) {

@@ -15,7 +15,7 @@ const WORDS = { sprung: "body", unsprung: "wheel", primary: "primary mass" };
 export const inWords = (name) => WORDS[name] ?? name.replace(/^unsprung_/, "").replaceAll("_", " ");
 
 /** A mass with its unit. @param {number} mass [kg] */
-export const massText = (mass) => (mass >= 1e4 ? `${Number((mass / 1e3).toPrecision(4))} t`
+const massText = (mass) => (mass >= 1e4 ? `${Number((mass / 1e3).toPrecision(4))} t`
   : `${Number(mass.toPrecision(5))} kg`);
 
 /** @param {number} value @param {string} unit */

@@ -249,6 +249,27 @@ def test_what_is_asked_before_the_first_optimum_is_asked_of_it(
         page.get_by_text("Not today.").first.wait_for()  # the answer to what is asked now, and shown
 
 
+def test_a_study_that_is_changed_before_its_first_optimum_begins_at_that_of_what_it_has_become(
+    served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    visitor = visitors(served)
+    page = visitor.page
+    with held(visitor, "panel/optimise") as waiting:
+        with page.expect_request("**/api/panel/optimise"):
+            visitor.visit()
+        page.fill("[id='entry vehicle.sprung_mass']", "320 kg")
+        page.keyboard.press("Enter")
+        page.evaluate(FRAMES)
+        with page.expect_request("**/api/panel/optimise") as asked:
+            waiting.pop().continue_()
+        page.evaluate(FRAMES)
+        assert asked.value.post_data_json["study"]["vehicle"]["sprung_mass"] == "320 kg"
+        waiting.pop().continue_()
+        visitor.chosen()
+    visitor.settled()
+    assert page.locator("#verdict .stale").count() == 0
+
+
 def test_a_page_that_is_reloaded_before_its_first_optimum_begins_at_it_too(
     served: Served, visitors: Callable[..., Visitor]
 ) -> None:

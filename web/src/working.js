@@ -101,9 +101,9 @@ export async function openStudy(store, api, study) {
 }
 
 /** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of
- * which the page tells. @param {Store} store @param {Api} api @param {string | null} gesture */
+ * which the page tells. A study that is changed meanwhile gets those of what it has become. @param {Store} store @param {Api} api @param {string | null} gesture */
 export async function beginAtBest(store, api, gesture = null) {
-  const { study } = store.get().history.present;
+  const { turn, history: { present: { study } } } = store.get();
   const [index] = indicesIn(study);
   const method = quickMethod(store.get())?.name;
   if (!index || !method) return;
@@ -112,15 +112,19 @@ export async function beginAtBest(store, api, gesture = null) {
     const designs = await untilFound(() => bestAtFirst(api, study, index, method));
     const { present } = store.get().history;
     const open = designs.filter(({ layout }) => own(present.values, layout) === undefined); // nobody has chosen those
-    if (open.length === 0 || present.study !== study) return;
-    takeOptima(store, open, gesture, study);
-    const doubts = doubted(open.flatMap(membersOf));
-    if (doubts) store.say(doubts.trim());
+    if (open.length > 0 && present.study === study) {
+      takeOptima(store, open, gesture, study);
+      const doubts = doubted(open.flatMap(membersOf));
+      if (doubts) store.say(doubts.trim());
+    }
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   } finally {
     store.dispatch({ type: "chosen", study });
   }
+  const { present } = store.get().history;
+  const isChanged = present.study !== study && store.get().turn === turn;
+  if (isChanged && Object.keys(present.values).length === 0) await beginAtBest(store, api, gesture);
 }
 
 /** The best designs of all layouts; none where nothing is free, or where they take longer than a person waits.

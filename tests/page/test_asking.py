@@ -167,7 +167,7 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         asked.locator("[name=value]").fill(value)
         asked.get_by_role("button", name="Add").click()
         page.wait_for_selector(told)  # which moves the button: what is pressed meanwhile misses it
-    entry = page.get_by_label("static stiffness at least", exact=True)
+    entry = page.get_by_label("static-stiffness.strut at least", exact=True)
     entry.fill("60 kN/m")
     entry.press("Enter")
     page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")

@@ -101,7 +101,8 @@ export async function openStudy(store, api, study) {
 }
 
 /** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of
- * which the page tells. A study that is changed meanwhile gets those of what it has become. @param {Store} store @param {Api} api @param {string | null} gesture */
+ * which the page tells. A study that is changed meanwhile gets those of what it has become. @param {Store} store
+ * @param {Api} api @param {string | null} gesture */
 export async function beginAtBest(store, api, gesture = null) {
   const { turn, history: { present: { study } } } = store.get();
   const [index] = indicesIn(study);

@@ -24,7 +24,8 @@ export function AskedPanel({ store }) {
   const limits = limitsOf(state);
   const choices = limitable(state);
   /** @type {{of: string, quantity: string}[]} */
-  const told = (answerOf(state, "decision").value?.rows ?? []).flatMap((/** @type {any} */ { limits }) => limits ?? []);
+  const told = (answerOf(state, "decision").value?.rows ?? [])
+    .flatMap((/** @type {any} */ { limits }) => limits ?? []);
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
     ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });

@@ -84,7 +84,7 @@ def _measure(page: Any, link: str, steps: int) -> None:
     for what in ("request", "reload"):
         begun = time.perf_counter()
         page.goto(link) if what == "request" else page.reload()
-        for part, selector in (("the page", ".values .amount"), ("numbers", "td[data-index]")):
+        for part, selector in (("the page", ".values .amount"), ("numbers", "td[data-index][data-value]")):
             page.wait_for_selector(selector)
             print(f"{f'from the {what} to {part}':32} {time.perf_counter() - begun:8.2f} s")
     page.wait_for_timeout(1000)

@@ -114,6 +114,30 @@ def test_a_front_says_of_which_values_it_is(tmp_path: Path, settings: str, more:
     assert sentence.startswith(f"Trade-off between {words}, at the knee: S2 ")
 
 
+def test_values_of_a_front_have_the_digits_that_their_errors_allow(tmp_path: Path) -> None:
+    study = study_of(tmp_path, ASK)
+    known = {"layout": "S2", "status": "ok", "values": [[2.0123, 512.34]], "parameters": [{"c": 7e3}]}
+    for errors, words in (
+        ({}, "2.012 m/s^2 and 512.3 N"),
+        ({"error_bounds": [[0.03, 0.03]]}, "2 m/s^2 and 510 N"),
+        ({"standard_errors": [[0.05, 20.0]], "error_bounds": [[None, None]]}, "2.012 +- 0.050 m/s^2 and 512 +- 20 N"),
+    ):
+        answer = FrontAnswer(**known, statuses=["ok"], jumps=[], knee=0, **errors)
+        (sentence,) = Fronts().sentences(TaskResults(study, xr.Dataset(), [answer]))
+        assert words in sentence
+
+
+@pytest.mark.parametrize("method", [it.Norm(), it.StatisticalLinearisation()])
+def test_a_front_knows_the_errors_of_its_values(method: it.Method) -> None:
+    free = it.Spring(60e3) | it.Damper(it.free(1e3, 1e4, name="c")) | it.Friction(100.0)
+    road = it.Road(5e-7, 25.0)
+    front = it.pareto_front(
+        it.QuarterCar(250.0, 35.0, 180e3, free), [it.RideComfort(road), it.TyreLoad(road)], method, points=3
+    )
+    np.testing.assert_array_equal([[one.value for one in row] for row in front.estimates], front.values)
+    assert all(one.error_bound > 0.0 for row in front.estimates for one in row)
+
+
 @pytest.mark.campaign
 def test_an_interrupted_front_goes_on_to_the_same_bytes(found: StudyResult, tmp_path: Path) -> None:
     again = run_study(found.study, tmp_path / "again").folder

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, PerformanceIndexError, Status
 from inerter.methods.composite_index import IndexLike
+from inerter.methods.method import Estimate
 from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult
 from inerter.validation import is_number
@@ -23,9 +24,10 @@ Array = NDArray[np.float64]
 class ParetoFront:
     """The Pareto front of two or three indices, in ascending order of the first.
 
-    `values` (points, criteria) are the indices of the designs, `parameters` their free values, `statuses` those of the
-    points. `jumps` are pairs of neighbours between which the front is discontinuous (for two criteria). `limits` has
-    the constraints at each point. `status` gives the reason for a front without points.
+    `values` (points, criteria) are the indices of the designs, `estimates` the same with their errors, `parameters`
+    their free values, `statuses` those of the points. `jumps` are pairs of neighbours between which the front is
+    discontinuous (for two criteria). `limits` has the constraints at each point. `status` gives the reason for a front
+    without points.
 
     >>> import inerter as it
     >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(it.free(100, 1e5, name="c")))
@@ -46,6 +48,7 @@ class ParetoFront:
     limits: tuple[tuple[ConstraintResult, ...], ...]
     seed: int
     status: Status = OK
+    estimates: tuple[tuple[Estimate, ...], ...] = ()
 
     @property
     def ideal(self) -> Array:

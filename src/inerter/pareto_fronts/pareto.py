@@ -411,7 +411,7 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     names = tuple(trade.vehicle.free_values())
     parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)
     designs = tuple(trade.vehicle.with_values(values) for values in parameters)
-    estimates = [[estimate_of(design, one, trade.method) for one in trade.indices] for design in designs]
+    estimates = tuple(tuple(estimate_of(design, one, trade.method) for one in trade.indices) for design in designs)
     statuses = tuple(worst_of(e.status for e in row) for row in estimates)
     bad, troubled = worst_of(statuses), sum(not one.ok for one in statuses)
     status = OK if bad.ok else Status(bad.kind, f"{troubled} of {len(statuses)} points, such as one with {bad.message}")
@@ -423,4 +423,4 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     keys = [one.point.tobytes() for one in several]
     pairs = tuple((i, i + 1) for i in range(len(keys) - 1) if (keys[i], keys[i + 1]) in jumps)
     values = np.array([[estimate.value for estimate in row] for row in estimates])
-    return ParetoFront(trade.indices, values, parameters, designs, statuses, pairs, held, seed, status)
+    return ParetoFront(trade.indices, values, parameters, designs, statuses, pairs, held, seed, status, estimates)

@@ -85,14 +85,14 @@ def front_html(found: ParetoFront) -> str:
         Row(
             cells(
                 str(number + 1),
-                *(Quantity(float(v), index.unit) for v, index in zip(values, found.indices, strict=True)),
+                *map(_estimate_quantity, estimates),
                 *(Quantity(parameters[name], units.get(name, "")) for name in names),
             ),
             strong=number == found.knee,
             status=status.doubt,
         )
-        for number, (values, parameters, status) in enumerate(
-            zip(found.values, found.parameters, found.statuses, strict=True)
+        for number, (estimates, parameters, status) in enumerate(
+            zip(found.estimates, found.parameters, found.statuses, strict=True)
         )
     ]
     return _html(Table("Pareto front", columns("point", *heads, *names), rows), found.status)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import isfinite
+from dataclasses import dataclass, field, replace
+from math import isfinite, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -64,6 +64,17 @@ class FrontAnswer(Answer):
     statuses: list[str]
     jumps: list[int]  # points after which the front leaps
     knee: int | None
+    standard_errors: list[list[float | None]] = field(default_factory=list)  # of the values; none of an exact method
+    error_bounds: list[list[float | None]] = field(default_factory=list)  # of the values, relative, sampling apart
+
+    def quantities(self, study: Study, point: int) -> list[Quantity]:
+        """The indices at a point with their units and errors."""
+        none: list[float | None] = [None] * len(study.trade_off)
+        errors, bounds = (known[point] if known else none for known in (self.standard_errors, self.error_bounds))
+        return [
+            Quantity(value, study.unit(name), nan if error is None else error, nan if bound is None else bound)
+            for name, value, error, bound in zip(study.trade_off, self.values[point], errors, bounds, strict=True)
+        ]
 
 
 class Fronts(Task[FrontAnswer]):
@@ -163,8 +174,8 @@ class Fronts(Task[FrontAnswer]):
         )
         clauses = []
         for front in fronts:
-            knee = zip(study.trade_off, front.values[front.knee or 0], strict=True)
-            values = format_list([format_quantity(value, study.unit(name)) for name, value in knee])
+            knee = front.quantities(study, front.knee or 0)
+            values = format_list([format_quantity(q.value, q.unit, error=q.error, bound=q.bound) for q in knee])
             better = _dominance_clause(front, by_layout[study.baseline]) if study.baseline in by_layout else ""
             clauses.append(f"{front.layout} {values}{better}")
         doubts = [f"{front.layout}, {front.status_text}" for front in fronts if not front.ok]
@@ -183,8 +194,14 @@ def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
         statuses=list(map(str, found.statuses)),
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
+        standard_errors=[[_known(one.standard_error) for one in row] for row in found.estimates],
+        error_bounds=[[_known(one.error_bound) for one in row] for row in found.estimates],
         **with_decisive_method(found.status, method).to_json(),
     )
+
+
+def _known(number: float | None) -> float | None:
+    return number if number is not None and isfinite(number) else None
 
 
 def _without(layout: str, status: str, message: str) -> FrontAnswer:
@@ -207,10 +224,10 @@ def _method_words(study: Study) -> str:
 def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterator[Row]:
     """Rows on the points of a front; those at its ends and its knee are shown."""
     shown = _labelled_points(study, front)
-    for i, (values, design) in enumerate(zip(front.values, front.parameters, strict=True)):
+    for i, design in enumerate(front.parameters):
         contents = [
             *(front.layout, shown.get(i), i + 1),
-            *(Quantity(value, study.unit(name)) for name, value in zip(study.trade_off, values, strict=True)),
+            *front.quantities(study, i),
             *(Quantity(design[name], study.free_units[name]) if name in design else None for name in parameters),
             *("yes" if i == front.knee else "", "yes" if i in front.jumps else "", front.statuses[i]),
         ]

@@ -282,6 +282,31 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     page.wait_for_selector(".records .plot", state="detached")
 
 
+def test_what_cannot_be_read_of_a_folder_is_said(visitor: Visitor, tmp_path: Path) -> None:
+    """Of a result folder the study alone is read, whatever its other files are."""
+    page = visitor.page
+    visitor.settled()
+    page.evaluate(
+        """(text) => {
+          const gone = (take, refuse) => refuse(new DOMException("It is gone.", "NotFoundError"));
+          const file = (name, read) =>
+            ({ isFile: true, name, file: (...given) => (window.gone ? gone : read)(...given) });
+          const inside = [file("record.csv", gone),
+            file("study.resolved.toml", (take) => take(new File([text], "study.resolved.toml")))];
+          DataTransferItem.prototype.webkitGetAsEntry = () => {
+            const parts = [inside, []];
+            return { isFile: false, createReader: () => ({ readEntries: (take) => take(parts.shift()) }) };
+          };
+        }""",
+        _two_struts(title="From a folder"),
+    )
+    drop(visitor, tmp_path)
+    page.wait_for_selector("text=study.resolved.toml is open")
+    page.evaluate("() => { window.gone = true; }")
+    drop(visitor, tmp_path)
+    page.wait_for_selector("text=What was dropped cannot be read: It is gone.")
+
+
 def test_results_of_a_simulation_are_dropped(visitor: Visitor, tmp_path: Path) -> None:
     """A vehicle is opened as a study of it, a device of a rig joins the study that is open; nothing is overwritten."""
     page = visitor.page

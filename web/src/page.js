@@ -22,7 +22,7 @@ import { Chip, Select, formHandler } from "./parts/controls.js";
 import { html, useEffect, useMemo, useState } from "./parts/html.js";
 import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
 import { answerOf } from "./questions.js";
-import { open } from "./remembering.js";
+import { open, studiesFirst } from "./remembering.js";
 
 /** @import { Store } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -263,7 +263,8 @@ function listen(store, api, showKeys) {
   addEventListener("drop", (event) => {
     if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();
-    void filesOf(event.dataTransfer).then((files) => open(store, api, files));
+    filesOf(event.dataTransfer).then((files) => open(store, api, files))
+      .catch((/** @type {Error} */ { message }) => store.say(`What was dropped cannot be read: ${message}`));
   }, { signal });
   addEventListener("click", (event) => {
     for (const menu of document.querySelectorAll(MENUS)) {
@@ -323,25 +324,25 @@ function nextMessage() {
   /** @type {HTMLElement | undefined} */ (next)?.focus();
 }
 
-/** The files that were dropped, and of a folder the files in it. @param {DataTransfer} transfer
+/** The files that were dropped, and of a folder the files in it that are of use. @param {DataTransfer} transfer
  * @returns {Promise<File[]>} */
 async function filesOf(transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null
     && entry !== undefined);
-  const found = await Promise.all(entries.map(filesIn));
-  return found.length ? found.flat() : [...transfer.files];
+  const found = (await Promise.all(entries.map(entriesIn))).flat();
+  return found.length ? Promise.all(studiesFirst(found).map(fileOf)) : [...transfer.files];
 }
 
-/** @param {any} entry @returns {Promise<File[]>} */
-async function filesIn(entry) {
-  if (entry.isFile) return [await fileOf(entry)];
+/** A file, or the files in a folder. @param {any} entry @returns {Promise<any[]>} */
+async function entriesIn(entry) {
+  if (entry.isFile) return [entry];
   const reader = entry.createReader();
   /** @type {any[]} */
   const inside = [];
   // a hundred at a time
   for (let more = [entry]; more.length > 0; inside.push(...more)) more = await new Promise((resolve, reject) =>
     reader.readEntries(resolve, reject));
-  return Promise.all(inside.filter(({ isFile }) => isFile).map(fileOf));
+  return inside.filter(({ isFile }) => isFile);
 }
 
 /** @param {any} entry @returns {Promise<File>} */

@@ -122,7 +122,7 @@ const RECORDS = /\.(csv|tsv|txt|tdms|mf4|mdf|mat)$/i;
 /** Opens what was dropped or chosen: study files, and measured records. @param {Store} store @param {Api} api
  * @param {Iterable<File>} files */
 export async function open(store, api, files) {
-  for (const file of await studiesFirst(files)) {
+  for (const file of studiesFirst(files)) {
     try {
       if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
@@ -137,8 +137,9 @@ export async function open(store, api, files) {
 // what a result folder was made of, or what came of it
 const SOURCES = ["study.resolved.toml", "simulation.toml", "fit.json"];
 
-/** Of a result folder what it was made of, else the files themselves. @param {Iterable<File>} files */
-async function studiesFirst(files) {
+/** Of a result folder what it was made of, else the files themselves. @template {{name: string}} T
+ * @param {Iterable<T>} files @returns {T[]} */
+export function studiesFirst(files) {
   const all = [...files];
   const source = SOURCES.map((wanted) => all.find(({ name }) => name === wanted)).find(Boolean);
   return source ? [source] : all;

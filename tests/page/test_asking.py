@@ -282,6 +282,18 @@ def test_study_folder_and_record_are_dropped(visitor: Visitor, tmp_path: Path) -
     page.wait_for_selector(".records .plot", state="detached")
 
 
+def test_files_are_accepted_by_what_comes_under_them(visitor: Visitor) -> None:
+    """Where the page draws anew meanwhile, a file only ever enters what is below it, and is dropped without moving."""
+    visitor.settled()
+    accepted = visitor.page.evaluate("""() => {
+      const dataTransfer = new DataTransfer();
+      dataTransfer.items.add(new File(["x"], "a.toml"));
+      return ["dragenter", "dragover"].map((kind) =>
+        !document.body.dispatchEvent(new DragEvent(kind, { dataTransfer, bubbles: true, cancelable: true })));
+    }""")
+    assert accepted == [True, True]
+
+
 def test_what_cannot_be_read_of_a_folder_is_said(visitor: Visitor, tmp_path: Path) -> None:
     """Of a result folder the study alone is read, whatever its other files are."""
     page = visitor.page

@@ -258,8 +258,8 @@ function listen(store, api, showKeys) {
     event.preventDefault();
     act();
   }, { signal });
-  addEventListener("dragover", (event) => event.dataTransfer?.types.includes("Files") && event.preventDefault(),
-    { signal });
+  for (const kind of /** @type {const} */ (["dragenter", "dragover"])) addEventListener(kind, (event) =>
+    event.dataTransfer?.types.includes("Files") && event.preventDefault(), { signal }); // both accept what is dropped
   addEventListener("drop", (event) => {
     if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();

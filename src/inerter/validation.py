@@ -21,6 +21,15 @@ def is_number(value: object) -> TypeGuard[float]:
         return False
 
 
+def number_or_none(value: object) -> float | None:
+    """The value, or None unless it is a finite number: what JSON holds of an error that is not known.
+
+    >>> number_or_none(2.0), number_or_none(math.nan), number_or_none(None)
+    (2.0, None, None)
+    """
+    return value if is_number(value) else None
+
+
 def check_positive(error: type[InerterError], what: str, value: object, unit: str) -> None:
     """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:

@@ -25,6 +25,7 @@ from inerter.report.index_summary import best_layouts
 from inerter.statements import Severity
 from inerter.table import MISSING, Column, Row, Table, cells
 from inerter.units import quote_value
+from inerter.validation import number_or_none
 from inerter.vehicle.replace_values import elements_by_label
 from inerter.vehicle.vehicle import Vehicle
 
@@ -75,9 +76,9 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             method=budget_method(study),
             at_most=element.may_vanish,
             value=found.value if found and known else None,
-            standard_error=found.standard_error if found and np.isfinite(found.standard_error) else None,
+            standard_error=number_or_none(found and found.standard_error),
             interval=found.interval if found and np.isfinite(found.interval).all() else None,
-            error_bound=found.error_bound if found and np.isfinite(found.error_bound) else None,
+            error_bound=number_or_none(found and found.error_bound),
             crossings=[crossing.value for crossing in found.crossings] if found else [],
             status=status,
             message=message,

@@ -20,6 +20,7 @@ from inerter.methods.registry import with_decisive_method
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.pareto import pareto_front
 from inerter.table import Column, Quantity, Row, Table, cells
+from inerter.validation import number_or_none
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -194,14 +195,10 @@ def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
         statuses=list(map(str, found.statuses)),
         jumps=[before for before, _ in found.jumps],
         knee=found.knee,
-        standard_errors=[[_known(one.standard_error) for one in row] for row in found.estimates],
-        error_bounds=[[_known(one.error_bound) for one in row] for row in found.estimates],
+        standard_errors=[[number_or_none(one.standard_error) for one in row] for row in found.estimates],
+        error_bounds=[[number_or_none(one.error_bound) for one in row] for row in found.estimates],
         **with_decisive_method(found.status, method).to_json(),
     )
-
-
-def _known(number: float | None) -> float | None:
-    return number if number is not None and isfinite(number) else None
 
 
 def _without(layout: str, status: str, message: str) -> FrontAnswer:

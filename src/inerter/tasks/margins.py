@@ -27,6 +27,7 @@ from inerter.networks.transform import map_elements
 from inerter.statements import Severity
 from inerter.tasks.budgets import element_break_even, range_text
 from inerter.uncertainty.tolerance import tolerance_analysis
+from inerter.validation import number_or_none
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
 
@@ -281,9 +282,9 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         found.unit,
         method,
         found.value if known else None,
-        found.standard_error if isfinite(found.standard_error) else None,
+        number_or_none(found.standard_error),
         found.interval if all(map(isfinite, found.interval)) else None,
-        found.error_bound if isfinite(found.error_bound) else None,
+        number_or_none(found.error_bound),
         found.status.kind.value,
         found.status.message,
         short,

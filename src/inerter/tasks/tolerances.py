@@ -18,6 +18,7 @@ from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import with_decisive_method
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import tolerance_analysis
+from inerter.validation import number_or_none
 
 SHARE = 0.95  # of cases, of the quantile that is told
 _NUMBERS = ("nominal", "mean", "standard_deviation", "quantile", "worst")
@@ -61,7 +62,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
             effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
             standard_error=found.nominal.standard_error,
-            error_bound=found.nominal.error_bound if np.isfinite(found.nominal.error_bound) else None,
+            error_bound=number_or_none(found.nominal.error_bound),
             **with_decisive_method(found.status, method).to_json(),
         )
 

@@ -14,13 +14,18 @@ function nameParts() {
   }
 }
 
-function reachWhatScrolls() {
-  for (const block of all("pre, .table-wrapper")) {
-    if (block.scrollWidth > block.clientWidth) block.tabIndex = 0;
-    else block.removeAttribute("tabindex");
-  }
+function reachIfItScrolls(block) {
+  if (block.scrollWidth > block.clientWidth) block.tabIndex = 0;
+  else block.removeAttribute("tabindex");
 }
 
+const blocks = () => all("pre, .table-wrapper");
+// A block is observed from its first layout on, so also where it changes before "load" or without a "resize" of the window;
+// a font that arrives late changes what is in a block and not its own size.
+const resized = new ResizeObserver(changes => changes.forEach(change => reachIfItScrolls(change.target)));
+const whenFontsArrive = () => blocks().forEach(reachIfItScrolls);
+
 addEventListener("DOMContentLoaded", nameParts);
-addEventListener("load", reachWhatScrolls);
-addEventListener("resize", reachWhatScrolls);
+addEventListener("DOMContentLoaded", () => blocks().forEach(block => resized.observe(block)));
+addEventListener("load", whenFontsArrive);
+document.fonts.addEventListener("loadingdone", whenFontsArrive);

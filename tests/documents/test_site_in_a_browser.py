@@ -39,6 +39,8 @@ KINDS = {
     "search": "search.html",
     "results": "search.html?q=optimise",
 }
+DRAWN = "() => new Promise(drawn => requestAnimationFrame(() => requestAnimationFrame(drawn)))"
+"""Once the window is laid out at its new size, of which it tells its observers in its next frame."""
 SIZES = {"wide": (1280, 800), "narrow": (420, 800)}
 
 
@@ -80,12 +82,26 @@ def test_a_page_is_accessible_and_fits(kind: str, page: Any, origin: str) -> Non
     page.evaluate(axe.Axe().axe_script)
     for size, (width, height) in SIZES.items():
         page.set_viewport_size({"width": width, "height": height})
+        page.evaluate(DRAWN)
         if wanted := os.environ.get("INERTER_PICTURES"):
             page.screenshot(path=Path(wanted) / f"site-{kind}-{size}.png")
         too_wide = "() => document.documentElement.scrollWidth - document.documentElement.clientWidth"
         assert page.evaluate(too_wide) == 0, size
         found = page.evaluate("() => axe.run(document, { resultTypes: ['violations'] }).then(all => all.violations)")
         assert [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in found] == [], size
+
+
+def test_what_comes_to_scroll_is_reached_by_keys(page: Any, origin: str) -> None:
+    """Not only when the window changes its size: a drawer that opens makes lines too long as well."""
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.goto(f"{origin}/{KINDS['notebook']}", wait_until="networkidle")
+    block = page.locator("#codecell0")
+    block.evaluate("block => { block.parentElement.style.width = '150px'; }")
+    page.evaluate(DRAWN)
+    assert block.get_attribute("tabindex") == "0"
+    block.evaluate("block => { block.parentElement.style.width = '4000px'; }")
+    page.evaluate(DRAWN)
+    assert block.get_attribute("tabindex") is None
 
 
 @pytest.mark.parametrize(

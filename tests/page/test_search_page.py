@@ -149,3 +149,21 @@ def test_a_value_in_the_si_unit_is_shown_in_one_that_suits_it(visitor: Visitor) 
     page.get_by_label("Title of the study").focus()
     page.wait_for_function("() => document.getElementById('entry elements.k').value === '10 MN/m'")
     assert entry.get_attribute("title") == "10000000.0 N/m"
+
+
+def test_enter_in_a_field_begins_no_long_work(served: Served, searching: Visitor) -> None:
+    """It takes over the number, as in every other field of the page."""
+    page = searching.page
+    page.get_by_role("button", name="Search for the best network").click()
+    form = page.locator("form.begin", has_text="Search for the best network")
+    inerters = form.get_by_label("inerters at most")
+    before = json.loads(served.get("work"))["work"]
+    inerters.fill("1")
+    inerters.press("Enter")
+    page.wait_for_function(
+        "() => JSON.parse(sessionStorage.getItem('inerter.document')).study.elements.any.inerters_at_most === 1"
+    )
+    sweep = page.locator("form.begin", has_text="Sweep")
+    sweep.locator("[name=from]").press("Enter")
+    searching.settled()
+    assert json.loads(served.get("work"))["work"] == before

@@ -56,13 +56,17 @@ export function WorkPanel({ store, api }) {
   </div>`;
 }
 
+/** Long work begins with its button: Enter in a field only takes over what was typed. @param {KeyboardEvent} event */
+const notByEnter = (event) =>
+  event.key === "Enter" && event.target instanceof HTMLInputElement && event.preventDefault();
+
 /** @param {{store: Store, api: Api, kind: Kind}} props */
 function Begin({ store, api, kind }) {
   const [told, setTold] = useState("");
   const state = store.get();
   const { study } = state.history.present;
   const lacking = kind.lacks?.(state);
-  return html`<form class="begin" onSubmit=${formHandler(async (form) => {
+  return html`<form class="begin" onKeyDown=${notByEnter} onSubmit=${formHandler(async (form) => {
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     const told = await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) });
     setTold(told);

@@ -8,7 +8,8 @@ export function Field({ text, done, ...attributes }) {
   const [typed, setTyped] = useState(/** @type {string | null} */ (null));
   const finish = textHandler((entered) => {
     setTyped(null);
-    done(entered);
+    if (entered !== String(text ?? "")) done(entered);
   });
-  return html`<input ...${attributes} value=${typed ?? text} onInput=${textHandler(setTyped)} onChange=${finish} />`;
+  return html`<input ...${attributes} value=${typed ?? text} onInput=${textHandler(setTyped)} onChange=${finish}
+    onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === "Enter" && finish(event)} />`;
 }

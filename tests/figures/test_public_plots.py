@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.signal
 import xarray as xr
+from matplotlib.lines import Line2D
 from wang_su import J1, ROAD
 
 import inerter as it
@@ -33,6 +34,13 @@ def test_bode_is_the_closed_form() -> None:
     np.testing.assert_allclose(np.exp(1j * angle), expected / np.abs(expected), rtol=0, atol=1e-8)
 
 
+def _unbroken(line: Line2D) -> np.ndarray:
+    """Phases of a line without the points where it leaves at one edge and continues at the other."""
+    angle = np.asarray(line.get_ydata())
+    breaks = np.flatnonzero(np.isnan(angle))
+    return np.delete(angle, np.concatenate([breaks - 1, breaks, breaks + 1]))
+
+
 def test_the_phase_of_delays_is_within_half_a_turn() -> None:
     """The wheelbase delay of a half car turns it many times: by -4700 degrees if it were unwrapped."""
     strut = it.Spring(K) | it.Damper(C)
@@ -48,7 +56,18 @@ def test_the_phase_of_delays_is_within_half_a_turn() -> None:
         front=strut,
         rear=strut,
     )
-    phase = it.plot_bode(car, it.RideComfort(ROAD))[1]
+    gain, phase = it.plot_bode(car, it.RideComfort(ROAD))
+    labels = [text.get_text() for text in gain.figure.legends[0].get_texts()]
+    assert labels == ["sprung acceleration", "pitch acceleration x 1.3 m"]  # the unit of the axis is that of both
+    for output, weight, line in zip(("sprung_acceleration", "pitch_acceleration"), (1.0, 1.3), gain.lines, strict=True):
+        hertz = np.asarray(line.get_xdata())
+        delayed = [it.plot_bode(car, (road, output), frequency=hertz) for road in ("road_front", "road_rear")]
+        front, rear = (
+            np.asarray(one[0].lines[0].get_ydata()) * np.exp(1j * np.deg2rad(_unbroken(one[1].lines[0])))
+            for one in delayed
+        )
+        expected = weight * np.abs(front + rear * np.exp(-2j * np.pi * hertz * 2.6 / ROAD.speed))
+        np.testing.assert_allclose(line.get_ydata(), expected, rtol=1e-6, atol=1e-9 * expected.max())
     for line in phase.lines:
         frequency, angle = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
         breaks = np.flatnonzero(np.isnan(angle))
@@ -240,3 +259,22 @@ def test_a_map_has_axes_for_each_layout(tmp_path: Path) -> None:
     assert dots == {(c, k) for c in (1.0, 2.0, 4.0) for k in (40.0, 80.0)}
     with pytest.raises(it.InerterError, match="one swept number, got 2"):
         it.plot_sweep(results, "J1")
+
+
+@pytest.mark.parametrize("plot", ["bode", "nyquist", "poles", "step_response", "admittance"])
+def test_a_legend_covers_no_curve(plot: str) -> None:
+    struts = {f"damping of {c} N s/m": it.Spring(K) | it.Damper(c) for c in range(100, 900, 100)}
+    designs = {name: it.QuarterCar(MASS, WHEEL, TYRE, strut) for name, strut in struts.items()}
+    drawn = {
+        "bode": lambda: it.plot_bode(designs, ("road", "tyre_load"))[0],
+        "nyquist": lambda: it.plot_nyquist(designs, ("road", "tyre_load")),
+        "poles": lambda: it.plot_poles(designs),
+        "step_response": lambda: it.plot_step_response(designs, ("road", "tyre_load")),
+        "admittance": lambda: it.plot_admittance(struts)[0],
+    }[plot]()
+    figure = drawn.figure
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    for ax in figure.axes:
+        assert ax.get_legend() is None
+        assert not ax.get_tightbbox().padded(-1.0).overlaps(legend.get_window_extent())

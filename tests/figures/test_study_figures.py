@@ -31,6 +31,7 @@ CASES = {
     "one swept": sweep(["S1"], baseline=""),
     "two values over decades": sweep(stiffness=[1e3, 1e6]),
     "two methods": judged(designs()),
+    "two methods and a much worse layout": judged(with_value(designs(LONG), 40.0, layout="S3", index="J1")),
     "four methods": judged(designs(LONG), METHODS),
     "one method with errors": judged(designs(), ["expected-value"]),
     "two methods over a sweep": judged(sweep()),
@@ -148,6 +149,19 @@ def test_bars_say_what_is_not_a_number_and_what_is_cut():
     ax = improvement_bars(results, new_figure(height=3.0)[1][0])
     assert [text.get_text() for text in ax.texts][:3] == ["inf", "n/a", "−300.0"]
     assert min(bar.get_height() for bar in ax.containers[0]) == -100.0
+
+
+def test_points_of_several_methods_that_are_cut_are_marked():
+    """An ordinary point at -100 % for a layout that is 300 % worse would be read as -100 %."""
+    results, where = judged(designs()), {"index": "J5", "method": "norm"}
+    results["value"].loc[{"layout": "S2", **where}] = 4.0 * results["value"].loc[{"layout": "S1", **where}]
+    results = improved(results)
+    shown = {figure.name: figure for figure in study_figures(results)}["methods"]
+    points = [line for line in shown.draw().axes[2].lines if -100.0 in line.get_ydata()]
+    assert [line.get_marker() for line in points] == ["v"]
+    assert np.count_nonzero(np.isfinite(points[0].get_ydata())) == 1
+    assert shown.caption.endswith("Triangles: below -100 %.")
+    assert "Triangles" not in {figure.name: figure for figure in study_figures(judged(designs()))}["methods"].caption
 
 
 def test_frequency_responses_are_gains_over_hertz_with_the_baseline_black_and_dashed():

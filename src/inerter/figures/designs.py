@@ -65,10 +65,14 @@ def improvement_by_method(results: xr.Dataset, axes: Sequence[Axes]) -> Sequence
         for number, method in enumerate(methods(results)):
             row = by_method(results, method).sel(index=index, layout=names)
             values = np.where(np.isfinite(row["improvement"].values), row["improvement"].values, np.nan)
-            at, heights = places + (number - (len(methods(results)) - 1) / 2) * width, np.maximum(values, WORST)
+            at, shown = (
+                places + (number - (len(methods(results)) - 1) / 2) * width,
+                np.where(values < WORST, np.nan, values),
+            )
             look: dict[str, Any] = {"linestyle": "", "color": colour(number)}
-            ax.plot(at, heights, marker=marker(number), markersize=4.5, label=method_label(results, method), **look)
-            _error_bars(ax, row, at, heights, **look)
+            ax.plot(at, shown, marker=marker(number), markersize=4.5, label=method_label(results, method), **look)
+            _error_bars(ax, row, at, shown, **look)
+            ax.plot(at, np.where(values < WORST, WORST, np.nan), marker="v", markersize=6.0, fillstyle="none", **look)
         ax.axhline(0.0, color="black", linestyle="--", linewidth=0.8)
         ax.set_xlim(-0.5, len(names) - 0.5)
         ax.set_xticks(places, names, rotation=90 if upright_names(names) else 0)

@@ -79,7 +79,9 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     if compared_layouts(results) and several:
         yield StudyFigure(
             "methods",
-            f"Improvement over {baseline} by each method." + _uncertain(every, " Bars with caps: one standard error."),
+            f"Improvement over {baseline} by each method."
+            + _uncertain(every, " Bars with caps: one standard error.")
+            + (f" Triangles: below {format_number(WORST)} %." if _any(_cut(every)) else ""),
             partial(_methods, every),
         )
     if criteria(every) and bool(np.isfinite(every["front_value"]).any()):

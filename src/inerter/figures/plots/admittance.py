@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
 from inerter.figures.labels import axis_label
-from inerter.figures.plots.axes import axes_pair, curve_looks, label_gain_and_phase
+from inerter.figures.plots.axes import add_curve_legend, axes_pair, curve_looks, label_gain_and_phase
 from inerter.figures.plots.responses import check_frequencies
 from inerter.figures.style import style_context
 from inerter.networks.elements.algebra import Network, check_network
@@ -41,6 +41,7 @@ def plot_admittance(
             value = check_network(network).admittance(2j * np.pi * hertz)
             upper.plot(hertz, np.abs(value), **look)
             lower.plot(hertz, np.angle(value, deg=True), **look)
-        label_gain_and_phase(upper, lower, axis_label("Admittance", "N s/m"), len(named))
+        label_gain_and_phase(upper, lower, axis_label("Admittance", "N s/m"))
+        add_curve_legend(upper, len(named), axes)
         lower.set_yticks([-90.0, -45.0, 0.0, 45.0, 90.0])
     return upper, lower

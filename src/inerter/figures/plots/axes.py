@@ -6,9 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from inerter.figures.labels import axis_label
-from inerter.figures.style import colour, layout_styles, log_axis, new_figure
+from inerter.figures.style import add_legend, colour, layout_styles, log_axis, new_figure
 
 
 def single_axes(ax: Axes | None) -> Axes:
@@ -18,27 +19,25 @@ def single_axes(ax: Axes | None) -> Axes:
 
 def axes_pair(axes: Sequence[Axes] | None) -> tuple[Axes, Axes]:
     """The two axes that are given, or new ones above one another."""
-    upper, lower = axes if axes is not None else new_figure(2, height=2.0, width=4.6)[1]
+    upper, lower = axes if axes is not None else new_figure(2, height=2.4, width=4.6)[1]
     return upper, lower
 
 
-def label_gain_and_phase(upper: Axes, lower: Axes, gain: str, count: int) -> None:
-    """Labels, scales and the legend of a gain above a phase over frequency, of so many curves."""
+def label_gain_and_phase(upper: Axes, lower: Axes, gain: str) -> None:
+    """Labels and scales of a gain above a phase over frequency."""
     upper.set(ylabel=gain)
     lower.set(xlabel=axis_label("Frequency", "Hz"), ylabel=axis_label("Phase", "deg"))
     for ax in (upper, lower):
         log_axis(ax, "x")
         ax.margins(x=0.0)
     log_axis(upper, "y")
-    add_curve_legend(upper, count)
 
 
-def label_complex_plane(ax: Axes, real: str, imaginary: str, count: int) -> None:
-    """Labels with these units, lines through zero and the legend of so many curves in the complex plane."""
+def label_complex_plane(ax: Axes, real: str, imaginary: str) -> None:
+    """Labels with these units, and lines through zero, of the complex plane."""
     ax.axhline(0.0, color="#999999", linewidth=0.6)
     ax.axvline(0.0, color="#999999", linewidth=0.6)
     ax.set(xlabel=axis_label("Real part", real), ylabel=axis_label("Imaginary part", imaginary))
-    add_curve_legend(ax, count)
 
 
 def curve_looks(named: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -49,10 +48,15 @@ def curve_looks(named: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [{**styles[name].curve(), "label": name} for name in named]
 
 
-def add_curve_legend(ax: Axes, count: int) -> None:
-    """A legend where there are several curves, each name once."""
+def add_curve_legend(ax: Axes, count: int, given: object) -> None:
+    """A legend where there are several curves, each name once: in axes that are `given`, below a figure of our own."""
     entries = _entries(ax)
-    if entries and count > 1:
+    if not entries or count < 2:
+        return
+    if given is None:
+        assert isinstance(ax.figure, Figure)
+        add_legend(ax.figure, [ax])
+    else:
         ax.legend(list(entries.values()), list(entries))
 
 

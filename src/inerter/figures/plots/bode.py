@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.figures.plots.axes import axes_pair, label_gain_and_phase
+from inerter.figures.plots.axes import add_curve_legend, axes_pair, label_gain_and_phase
 from inerter.figures.plots.responses import Designs, Response, response_curves
 from inerter.figures.style import style_context
 
@@ -22,10 +22,10 @@ def plot_bode(
 ) -> tuple[Axes, Axes]:
     """Gain and phase of designs over frequency [Hz], on two axes.
 
-    `designs` is one vehicle or several by their names; `response` an index, whose outputs are drawn without weights
-    over its excitation, or the names of an input and an output of `state_space`. A road is an input by its velocity.
-    The phase is within 180 degrees of zero, also where delays between axles turn it many times: a line that leaves at
-    one edge continues at the other.
+    `designs` is one vehicle or several by their names; `response` an index, whose outputs are drawn with their
+    weights over its excitation, or the names of an input and an output of `state_space`. A road is an input by its
+    velocity. The phase is within 180 degrees of zero, also where delays between axles turn it many times: a line that
+    leaves at one edge continues at the other.
 
     Raises `DesignError` for a design with free values, or a response to several independent sources, as of two tracks
     with a coherence; and what `state_space` raises for unknown names.
@@ -43,7 +43,8 @@ def plot_bode(
         for curve in curves:
             upper.plot(curve.frequency, np.abs(curve.value), **curve.look)
             lower.plot(*_wrapped_phase(curve.frequency, curve.value), **curve.look)
-        label_gain_and_phase(upper, lower, curves[0].gain_label, len(curves))
+        label_gain_and_phase(upper, lower, curves[0].gain_label)
+        add_curve_legend(upper, len(curves), axes)
         lower.yaxis.set_major_locator(_degrees(lower))
     return upper, lower
 

@@ -32,7 +32,7 @@ def plot_front(fronts: ParetoFront | Mapping[str, ParetoFront], *, ax: Axes | No
     if len(kinds) != 1 or any(len(kind) != 2 for kind in kinds):
         raise DesignError(f"A plot of fronts needs fronts of the same two indices, got {sorted(kinds)}.")
     with style_context():
-        ax = single_axes(ax)
+        given, ax = ax, single_axes(ax)
         for number, (name, front) in enumerate(named.items()):
             ax.plot(*front.values.T, "o-", color=colour(number), label=name, markersize=3.0)
             if len(front.values):
@@ -42,5 +42,5 @@ def plot_front(fronts: ParetoFront | Mapping[str, ParetoFront], *, ax: Axes | No
             for index in next(iter(named.values())).indices
         )
         ax.set(xlabel=first, ylabel=second)
-        add_curve_legend(ax, len(named))
+        add_curve_legend(ax, len(named), given)
     return ax

@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-from inerter.figures.plots.axes import label_complex_plane, single_axes
+from inerter.figures.plots.axes import add_curve_legend, label_complex_plane, single_axes
 from inerter.figures.plots.responses import Designs, Response, response_curves
 from inerter.figures.style import style_context
 
@@ -21,11 +21,12 @@ def plot_nyquist(
     'Real part [(m/s)/(m/s)]'
     """
     with style_context():
-        ax = single_axes(ax)
+        given, ax = ax, single_axes(ax)
         curves = list(response_curves(designs, response, frequency))
         for curve in curves:
             ax.plot(curve.value.real, curve.value.imag, **curve.look)
             ax.plot(curve.value.real[:1], curve.value.imag[:1], "o", color=curve.look["color"], markersize=3.5)
         ax.set_aspect("equal", adjustable="datalim")
-        label_complex_plane(ax, curves[0].unit, curves[0].unit, len(curves))
+        label_complex_plane(ax, curves[0].unit, curves[0].unit)
+        add_curve_legend(ax, len(curves), given)
     return ax

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from inerter.figures.plots.axes import label_complex_plane, single_axes
+from inerter.figures.plots.axes import add_curve_legend, label_complex_plane, single_axes
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import colour, style_context
 from inerter.formatting import format_number
@@ -23,7 +23,7 @@ def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
     'Real part [1/s]'
     """
     with style_context():
-        ax = single_axes(ax)
+        given, ax = ax, single_axes(ax)
         named = designs_by_name(designs)
         reach = 0.0
         for number, (name, vehicle) in enumerate(named.items()):
@@ -34,7 +34,11 @@ def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
             ray = np.array([0.0, reach])
             ax.plot(-ratio / np.sqrt(1.0 - ratio**2) * ray, ray, ":", color="#AAAAAA", linewidth=0.7)
             ax.annotate(
-                format_number(ratio), (-ratio / np.sqrt(1.0 - ratio**2) * reach, reach), color="#777777", fontsize=6.5
+                f"ζ = {format_number(ratio)}",
+                (-ratio / np.sqrt(1.0 - ratio**2) * reach, reach),
+                color="#777777",
+                fontsize=6.5,
             )
-        label_complex_plane(ax, "1/s", "rad/s", len(named))
+        label_complex_plane(ax, "1/s", "rad/s")
+        add_curve_legend(ax, len(named), given)
     return ax

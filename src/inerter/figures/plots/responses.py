@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import DesignError, LinearSystemError
 from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import curve_looks
-from inerter.files.study.responses import gain_unit, source_unit
+from inerter.files.study.responses import gain_unit, output_weights, source_unit
 from inerter.formatting import capital, in_words
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
@@ -42,39 +42,36 @@ def response_curves(designs: Designs, response: Response, frequency: ArrayLike |
     found = [_system(vehicle.mechanism(), vehicle, response) for vehicle in named.values()]
     omega = resonant_range([system.A for system, *_ in found])
     hertz = omega / (2.0 * np.pi) if frequency is None else check_frequencies(frequency)
-    for look, (system, pade_order, what, unit) in zip(curve_looks(named), found, strict=True):
+    for look, (system, pade_order, outputs, what, unit) in zip(curve_looks(named), found, strict=True):
         values = frequency_response(system, 2.0 * np.pi * hertz, pade_order)
         if values.shape[2] > 1:
             raise DesignError(
                 "Several independent sources excite this response, so that it has no phase. Plot it from one input to "
                 'one output, such as ("road_front_left", "roll_acceleration").'
             )
-        for row, output in enumerate(system.outputs):
-            several = {"label": f"{look['label']} {in_words(output)}".strip()} if len(system.outputs) > 1 else {}
-            yield ResponseCurve(hertz, values[:, row, 0], {**look, **several, **_fainter(row)}, what, unit)
+        for row, (output, weight) in enumerate(outputs.items()):
+            several = {"label": f"{look['label']} {in_words(output)}".strip()} if len(outputs) > 1 else {}
+            yield ResponseCurve(hertz, weight * values[:, row, 0], {**look, **several, **_fainter(row)}, what, unit)
 
 
-def _system(mechanism: Mechanism, vehicle: Vehicle, response: Response) -> tuple[LinearSystem, int | None, str, str]:
-    """System of a response, the order of its Pade approximants, what its gain is in words, and its unit."""
+def _system(
+    mechanism: Mechanism, vehicle: Vehicle, response: Response
+) -> tuple[LinearSystem, int | None, dict[str, float], str, str]:
+    """System of a response, order of its Pade approximants, weight of each output, and the gain in words and unit."""
     if not isinstance(response, tuple):
         if free := ", ".join(mechanism.free_values()):
             raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
         problem = linear_problem(mechanism, response.definition(mechanism), CONVENTIONS["exact"])
         system = problem.system(close(problem.descriptor, {}))
         definition = problem.definition
-        own = unit_of(mechanism, [system.outputs[0]]) if definition.drive.is_random else definition.unit
-        return (
-            system,
-            problem.pade_order,
-            capital(response.response),
-            gain_unit(own, source_unit(mechanism, definition)),
-        )
+        unit = gain_unit(definition.unit, source_unit(mechanism, definition))
+        return system, problem.pade_order, output_weights(mechanism, definition), capital(response.response), unit
     source, output = response
     system = state_space(vehicle, source, output)
     moved = source in {road.name for road in mechanism.roads}
     what = f"{capital(in_words(output))} over {in_words(source)}{' velocity' if moved else ''}"
     per = "m/s" if moved else input_unit(mechanism, source)
-    return system, None, what, gain_unit(unit_of(mechanism, [output]), per)
+    return system, None, {output: 1.0}, what, gain_unit(unit_of(mechanism, [output]), per)
 
 
 def designs_by_name(designs: Designs) -> dict[str, Vehicle]:

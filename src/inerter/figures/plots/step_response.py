@@ -37,7 +37,7 @@ def plot_step_response(
     """
     time = np.linspace(0.0, duration, _STEPS)
     with style_context():
-        ax = single_axes(ax)
+        given, ax = ax, single_axes(ax)
         named = designs_by_name(designs)
         label = ""
         for look, vehicle in zip(curve_looks(named), named.values(), strict=True):
@@ -49,7 +49,7 @@ def plot_step_response(
             label = f"{capital(in_words(response[1]))} [{what} per {per} of {in_words(response[0])}]"
         ax.set(xlabel=axis_label("Time", "s"), ylabel=label)
         ax.margins(x=0.0)
-        add_curve_legend(ax, len(named))
+        add_curve_legend(ax, len(named), given)
     return ax
 
 

@@ -84,10 +84,15 @@ def index_responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> 
                 angles[number] = np.angle(response[:, :, 0] * np.sign(weights)).T
         mechanism = designs[next(iter(mine)), index].mechanism()
         unit = gain_unit(definition.unit, source_unit(mechanism, definition))
-        units = [unit_of(mechanism, [o.output]) for o in definition.outputs]
-        names = [_output_label(o, own, definition.unit) for o, own in zip(definition.outputs, units, strict=True)]
+        names = list(output_weights(mechanism, definition))
         every.append(IndexResponse(index, names, gains, angles, unit, _words(study, index)))
     return omega, every
+
+
+def output_weights(mechanism: Mechanism, definition: IndexDefinition) -> dict[str, float]:
+    """Weights of the outputs of an index by their labels, which state any weight other than one."""
+    labels = (_output_label(one, unit_of(mechanism, [one.output]), definition.unit) for one in definition.outputs)
+    return dict(zip(labels, (one.weight for one in definition.outputs), strict=True))
 
 
 def gain_unit(unit: str, per: str) -> str:

@@ -306,6 +306,21 @@ def test_where_no_inerter_is_among_the_best_networks_none_is_made_real(tmp_path:
     assert "Ride comfort (J1) with real inerters: none of the best networks has an inerter." in search_sentences(found)
 
 
+@pytest.mark.parametrize("layout", ["any", "k | any"])
+def test_networks_that_carry_no_weight_are_named(tmp_path: Path, layout: str) -> None:
+    """The lowest acceleration has a body on a small damper alone, which sinks."""
+    asked = 'indices = ["J1"]\noptimise = "norm"'
+    study = load_text(
+        tmp_path, text(asked, ELEMENTS.replace("network = 2", "network = 1"), f'S1 = "k | c"\nS = "{layout}"')
+    )
+    told = [line for line in search_sentences(search_study(study, tmp_path / "out")) if "equilibrium" in line]
+    sinking = (
+        "Ride comfort (J1): no static equilibrium: no spring supports the body with c1. Put a spring in parallel with "
+        "the free network, or limit the static stiffness."
+    )
+    assert told == ([sinking] if layout == "any" else [])
+
+
 def test_a_network_that_fails_with_real_inerters_says_why(real: StudySearch) -> None:
     part = RealPart("S", "J1", "norm", "c1 - b1", real.searches[0].result.ranking[0])
     result = RealResult(**json.loads(json.dumps(part.failed_result(real.study, "out of memory").to_json())))

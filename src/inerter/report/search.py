@@ -11,6 +11,8 @@ import inerter
 from inerter.atomic_io import write_text
 from inerter.figures.search import FRONTIER, draw_search, figure_names
 from inerter.files.common.folder import FIGURES, REPORT
+from inerter.files.common.suggest import some
+from inerter.files.study.cases import NO_EQUILIBRIUM, lacks_equilibrium
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
     agreement_remark,
@@ -22,6 +24,7 @@ from inerter.files.study.search_tables import (
     frontier_table,
     improvement,
     inerters_table,
+    networks_shown,
     networks_table,
     ranking_table,
     real_networks_table,
@@ -80,6 +83,12 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
             f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
             f"{format_quantity(best.value, best.unit)}{against}{near}."
         )
+        unsupported = [each for each in networks_shown(one) if lacks_equilibrium(each.design.mechanism())]
+        if unsupported:
+            yield (
+                f"{capital(one.heading)}: {NO_EQUILIBRIUM} with {some(each.layout for each in unsupported)}. Put a "
+                "spring in parallel with the free network, or limit the static stiffness."
+            )
         yield from _real_sentences(found, one)
     for front in found.fronts:
         networks, points = front.result.networks, len(front.result.front)

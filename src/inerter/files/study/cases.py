@@ -26,6 +26,7 @@ from inerter.systems.descriptor import is_held_by_springs, linear_notes
 from inerter.vehicle.mechanism import Mechanism
 from inerter.work.progress import report, within
 
+NO_EQUILIBRIUM = "no static equilibrium: no spring supports the body"
 _OK = StatusKind.OK.value
 _SEARCHED = 0.97  # share of the work on a case that the search takes
 _MOST_SAMPLES = 64  # that are kept, for differences on the same roads
@@ -155,13 +156,18 @@ def run_case(study: Study, case: Case, threads: int = 1) -> Outcome:
 
 def design_notes(study: Study, mechanism: Mechanism) -> list[str]:
     """Notes on elements that the linear methods neglect in a design, and on a missing static equilibrium."""
-    measures = mechanism.measures
     blind = [method for method in study.methods if is_blind(method)]
     left_out = linear_notes(mechanism) if blind else ()
     notes = [f"{_prefix(study, method)}{note}" for method in blind for note in left_out]
-    if measures.load_input and measures.load_output and not is_held_by_springs(mechanism):
-        notes.append("no static equilibrium: no spring supports the body")
+    if lacks_equilibrium(mechanism):
+        notes.append(NO_EQUILIBRIUM)
     return notes
+
+
+def lacks_equilibrium(mechanism: Mechanism) -> bool:
+    """Whether springs leave a coordinate of a mechanism that carries a load without a position."""
+    measures = mechanism.measures
+    return bool(measures.load_input and measures.load_output) and not is_held_by_springs(mechanism)
 
 
 def _prefix(study: Study, method: str) -> str:

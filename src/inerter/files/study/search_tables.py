@@ -271,9 +271,14 @@ def parameter_unit(study: Study, name: str) -> str:
     return study.free_units.get(name) or kinds.get(name.rstrip("0123456789"), "")
 
 
+def networks_shown(one: LayoutSearch) -> list[FoundNetwork]:
+    """Networks that people see: the frontier, then the best of the ranking."""
+    return list(dict.fromkeys((*one.result.frontier, *one.result.ranking[:RANKED])))
+
+
 def at_bound_notes(one: LayoutSearch) -> Iterator[str]:
     """Remarks on the best networks with elements at their bounds, and on smaller ones that do as well."""
-    for found in dict.fromkeys((*one.result.frontier, *one.result.ranking[:RANKED])):
+    for found in networks_shown(one):
         if found.active_bounds:
             ends = ", ".join(f"{name} at its {end} bound" for name, end in found.active_bounds.items())
             yield f"{found.layout} has {ends}{f', so {found.simpler} does as well' if found.simpler else ''}"

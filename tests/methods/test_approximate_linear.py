@@ -232,6 +232,33 @@ def test_a_gap_is_no_linear_design():
     assert estimate.value != evaluate(car, J1, Norm()).value
 
 
+@pytest.mark.parametrize(
+    ("period", "spring", "damping", "gap", "stop", "screwed"),
+    sampled(
+        [
+            (6.0, 35.0e3, 182.7, 1.47e-4, 50.2e3, None),  # 28 % too much
+            (4.0, 11.4e3, 205.2, 8.09e-4, 40.1e3, 6.0),  # 10 % too much
+            (4.0, 53.5e3, 239.4, 1.68e-4, 392e3, 86.0),  # 6 % too little
+            (10.0, 81.5e3, 1446.7, 1.74e-3, 249e3, None),
+        ],
+        kept=1,
+    ),
+)
+def test_play_that_a_period_does_not_forget_is_within_its_bound_or_not_ok(period, spring, damping, gap, stop, screwed):
+    """Where no linear model tells what is between the harmonics, the way to the periodic steady state does."""
+    screw = Spring(stop) if screwed is None else (Spring(stop) | Damper(stop / 300)) - Inerter(screwed)
+    car = QuarterCar(250.0, 35.0, 150e3, Spring(spring) | Damper(damping) | Gap(gap) - screw)
+    short, long = (
+        evaluate(car, J1, ApproximateLinear(MultisineExcitation(lowest=lowest, highest=60.0), realisations=3))
+        for lowest in (1.0 / period, 0.0625 / period)
+    )
+    assert any("the gains are used alone" in note for note in short.notes)
+    assert long.status.ok
+    apart, error = abs(short.value - long.value), math.hypot(short.standard_error, long.standard_error)
+    assert apart < 4.0 * error + short.error_bound * short.value + long.error_bound * long.value
+    assert short.status.ok == (short.error_bound <= 0.05)
+
+
 def test_a_response_that_does_not_repeat_says_so():
     car = paper_quarter_car(Spring(1e3) | Damper(20.0) | Friction(0.1))
     hasty = MultisineExcitation(lowest=10.0, highest=100.0)

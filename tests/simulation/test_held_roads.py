@@ -198,7 +198,7 @@ def test_a_recorded_period_is_the_steady_state(period):
     road = it.multisine(ROAD, seed=4, lowest=1.0 / period, highest=50.0)
     system = piecewise(car)
     table = tabulate([road, None], [0.0, 0.0], period, 2e-3).repeating
-    run, mismatch = recorded_period(system, table)
+    run, mismatch, _ = recorded_period(system, table)
     assert mismatch <= 1e-6
     steady = it.simulate(car, road=road, initial="periodic", step=2e-3)
     assert run.state == pytest.approx(steady.final_state, abs=1e-5 * np.abs(steady.final_state).max())

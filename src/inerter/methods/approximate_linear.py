@@ -68,8 +68,9 @@ class ApproximateLinear(FormerMethodNames):
     linear design that moves alike (frictions as dampers of the r.m.s. velocities found, gaps closed), which are known,
     only the difference is estimated: an r.m.s. value is the root of norm^2 + sum of (gain^2 - linear gain^2), and for a
     peak gain the difference alone is smoothed over neighbouring frequencies, by a Hann window that reaches `smoothing`
-    [Hz] to both sides. Where play moves as no linear design does, gains stand alone, and a note says so; where the
-    period is too short for the slowest motion, there is no value. A linear design gets its norm.
+    [Hz] to both sides. Where play moves as no linear design does, gains stand alone, as a note says, and what lies
+    between the harmonics is bounded by what a period leaves of a motion. Where the period is too short for the slowest
+    motion, there is no value. A linear design gets its norm.
 
     With "paper2008" the input is the paper's noise, held for 1 ms and repeated after 100 s, and gains are the raw
     ratios |Y/U| at the instants of the samples, without the linear model; J3 of a half car is divided by s + 2 pi
@@ -246,7 +247,8 @@ class ApproximateLinear(FormerMethodNames):
         if self._raw:
             return self._combine(definition, None, gains, drive)
         if linear is None or drive.excitation.is_held:
-            return replace(self._combine(definition, None, gains, drive), notes=(_HELD if linear else _UNLIKE,))
+            alone = self._combine(definition, None, gains, drive, 2.0 * runs.left)
+            return replace(alone, notes=(_HELD if linear else _UNLIKE,))
         model = linear_model(linear, runs.speeds, drive.excitation.period)
         if not model.status.ok:
             return Estimate(math.inf if np.any(np.isinf(model.norms)) else math.nan, definition.unit, model.status)
@@ -254,7 +256,7 @@ class ApproximateLinear(FormerMethodNames):
         if unseen <= _LOST:
             return self._combine(definition, model, gains, drive, unseen)
         if has_play(runs.system):
-            return replace(self._combine(definition, None, gains, drive), notes=(_UNLIKE,))
+            return replace(self._combine(definition, None, gains, drive, 2.0 * runs.left), notes=(_UNLIKE,))
         at, decay = format_quantity(abs(model.pole.imag), "rad/s", 3), format_quantity(-model.pole.real, "1/s", 2)
         period = format_quantity(drive.excitation.period, "s", 6)
         message = f"a period of {period} is too short for the motion at {at}, which decays by {decay}; use a longer one"

@@ -83,6 +83,7 @@ class Runs:
     status: Status = OK
     warning: Status = OK
     mismatch: float = 0.0  # the largest change of the state over a period that was recorded, relative to its size
+    left: float = 0.0  # the largest share of a motion that is left after a period
 
     def upto(self, count: int) -> tuple[Array, Array]:
         """Squared sizes of outputs (realisations, outputs, harmonics) and of the input (realisations, harmonics).
@@ -117,11 +118,11 @@ class Runs:
         if number == 0:
             check_holds(self.system, self.drive.signals(seed))
         table, power = self.drive.realisation(seed)
-        run, mismatch = recorded_period(self.system, table)
+        run, mismatch, left = recorded_period(self.system, table)
         if not run.status.ok:
             self.status = Status(StatusKind.FAILED, f"realisation {number + 1}: {run.status.message}")
             return
-        self.mismatch = max(self.mismatch, mismatch)
+        self.mismatch, self.left = max(self.mismatch, mismatch), max(self.left, left)
         if mismatch > _REPEATS:
             self.warning = Status(
                 StatusKind.INACCURATE,

@@ -45,11 +45,14 @@ def common_period(signals: Sequence[Signal | None]) -> float:
     return period
 
 
-def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float]:
-    """The last period, recorded, and how well it repeats: the change of the state over it, relative to its size.
+def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integration, float, float]:
+    """The last period, recorded, how well it repeats, and how much of a motion a period leaves.
 
-    From rest, one period (or the end of a long one) is gone through to settle, then others until the state repeats.
-    `table` is one period that is repeated.
+    It repeats as well as the change of the state over it is small, relative to its size. From rest, one period (or the
+    end of a long one) is gone through to settle, then others until the state repeats. In that time the motion lacking
+    at first, as large as the state, falls to that change, which gives what is left of it after one period: an upper
+    bound for the shares of several modes, whose decays add up to less than the first of them alone would. `table` is
+    one period that is repeated.
     """
     last = table.time.size - 1
     first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
@@ -57,15 +60,17 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     run = event_driven.start(system, table, state, keep=False)
     run.motion.place["segment"] = first
     run.advance(last)
-    mismatch = np.inf
-    for _ in range(_RECORDED):
+    mismatch, settled = np.inf, 0.0
+    period = table.time[-1] - table.time[0]
+    begun_at = (table.time[-1] - table.time[first]) / period
+    for before in range(_RECORDED):
         if not run.status.ok or mismatch <= _ENOUGH:
             break
         begun = run.state
         run = event_driven.start(system, table, begun, after=run.ending)
         run.advance(last)
-        mismatch = run.mismatch(begun)
-    return run, mismatch
+        mismatch, settled = run.mismatch(begun), begun_at + before
+    return run, mismatch, min(mismatch ** (1.0 / settled), 1.0) if settled else 1.0
 
 
 def settle(

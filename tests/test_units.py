@@ -166,9 +166,14 @@ def test_what_is_not_a_stiffness_is_refused_in_one_sentence(text, words):
         ("1400 kgm^2", "kg m^2", "1400 kg m^2"),
         ("7 Ns/mm", "N s/m", "7 N s/mm"),
         ("5 kNm", "N m", "5 kN m"),
+        ("1222 kg m2", "kg m^2", "1222 kg m^2"),
+        ("2 g/cm3", "kg/m^3", "2 g/cm^3"),
+        ("90 kmh", "m/s", "90 km/h"),
     ],
 )
-def test_a_product_in_one_is_proposed_apart_and_with_its_prefix(text: str, unit: str, meant: str) -> None:
+def test_a_usual_spelling_that_is_no_unit_is_proposed_as_one_and_with_its_prefix(
+    text: str, unit: str, meant: str
+) -> None:
     with pytest.raises(UnitError, match=re.escape(f'such as "{meant}"')):
         parse_quantity(text, unit)
     assert parse_quantity(meant, unit) > 0.0

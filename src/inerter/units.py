@@ -28,7 +28,11 @@ _DENSITY = "/Hz"  # suffix of a spectral density, which may be given per rad/s t
 _PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # weight of a mass, as meant in a force
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
-_IN_ONE = re.compile(r"(?<=N)(?=s|m)|(?<=kg)(?=m)")  # where products are often written in one
+_SPELLINGS = (  # that are often seen, and their replacements
+    (re.compile(r"(?<=N)(?=s|m)|(?<=kg)(?=m)"), " "),
+    (re.compile(r"(?<=[a-z])(?=[234]\b)"), "^"),
+    (re.compile(r"\b(?:kmh|kmph)\b"), "km/h"),
+)
 PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
@@ -182,9 +186,9 @@ def _split(text: object, expected: str, units: Sequence[str] = (), example: str 
         _fail(text, "unit missing", expected, example)
     if not is_unit(given):
         why = "(units are case-sensitive; write a product with a space or *)"
-        apart = _apart(given)
-        if any(apart and _have_same_dimension(apart, unit) for unit in units):
-            example = f"{number.group(1)} {apart}"
+        meant = _respell(given)
+        if any(meant and _have_same_dimension(meant, unit) for unit in units):
+            example = f"{number.group(1)} {meant}"
         _fail(text, f"unknown unit {quote_value(given)} {why}", expected, example)
     return number.group(1), given
 
@@ -210,10 +214,12 @@ def _as_force(given: str, units: Iterable[str]) -> str:
     return force if force != given and any(_have_same_dimension(force, unit) for unit in units) else ""
 
 
-def _apart(given: str) -> str:
-    """`given` with the products apart that are often written in one ("kNs/m", "kgm^2"), if it is a unit then."""
-    apart = _IN_ONE.sub(" ", given)
-    return apart if apart != given and is_unit(apart) else ""
+def _respell(given: str) -> str:
+    """Unit that is meant by a usual spelling that is none ("kNs/m", "kg m2", "kmh"); else empty."""
+    unit = given
+    for pattern, replacement in _SPELLINGS:
+        unit = pattern.sub(replacement, unit)
+    return unit if unit != given and is_unit(unit) else ""
 
 
 def _with_prefix(given: str, unit: str) -> str:

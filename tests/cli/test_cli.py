@@ -111,6 +111,9 @@ def test_an_identification_that_is_interrupted_early_says_so_in_one_sentence(
         ("[road]", "[raod]", "raod"),
         ('baseline = "S1"', 'baseline = "S9"', "study.baseline"),
         ('"1 kg", to = "2000 kg"', '"2000 kg", to = "1 kg"', "elements.b"),
+        ('"1 kg", to = "2000 kg"', '"1 kg"', 'elements.b.to: missing; expected to = "1000 kg".'),
+        ('from = "1 kg", to = "2000 kg"', 'to = "2000 kg"', 'elements.b.from: missing; expected from = "2 kg".'),
+        ('from = "1 kg", to = "2000 kg"', 'to = "2000"', 'elements.b.from: missing; expected from = "100 N s/m".'),
     ],
 )
 def test_bad_study_files(tmp_path: Path, old: str, new: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -120,6 +123,13 @@ def test_bad_study_files(tmp_path: Path, old: str, new: str, words: str, capsys:
     message = fails(["check", str(path)], capsys)
     assert words in message
     assert "bad.toml" in message
+
+
+def test_a_template_in_place_of_a_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for options in ([], ["--force"]):
+        message = fails(["new", "-o", str(tmp_path), *options], capsys)
+        assert "this is a folder. Choose a file with -o, such as" in message
+    assert not list(tmp_path.iterdir())
 
 
 def test_run_writes_everything_and_prints_the_best(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

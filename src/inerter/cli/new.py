@@ -25,6 +25,8 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
     if path == _STDOUT:
         print(text, end="")
         return
+    if path.is_dir():
+        raise StudyError(f"{path}: this is a folder. Choose a file with -o, such as {path / f'{vehicle}.toml'}.")
     try:
         if force and path.exists():
             _check_own(path)
@@ -37,7 +39,7 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
             f"{path}: file exists and was not replaced. Choose another with -o FILE, or use --force for one that "
             "inerter new wrote."
         ) from None
-    except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
+    except (FileNotFoundError, NotADirectoryError):
         raise StudyError(f"{path}: folder not found. Choose another file with -o.") from None
     say(f"wrote {path}; run it: inerter run {path}")
 

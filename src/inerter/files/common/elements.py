@@ -26,6 +26,7 @@ from inerter.files.common.free_networks import FREE_NETWORK, is_free_network
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, collect_problem
 from inerter.files.common.ties import TIED, TieEntry, is_tie, tie_entry, tie_schema, tie_text, tied_element
+from inerter.formatting import format_quantity
 from inerter.networks.elements import NAME, Element, Free, Tied
 from inerter.networks.elements.registry import ELEMENTS, kinds_by_unit
 from inerter.networks.free_network import FreeNetwork
@@ -47,14 +48,28 @@ def _range(lower: Amount, upper: Amount) -> Range:
     return Range(lower, upper)
 
 
-RANGE = TableCodec(
-    (
-        Declaration(AMOUNT, "Lower bound.", 'from = "100 N s/m"', name=LOWER, attribute="lower"),
-        Declaration(AMOUNT, "Upper bound.", 'to = "100 kN s/m"', name=UPPER, attribute="upper"),
-    ),
-    make=_range,
-    about="A free value: an optimiser chooses it between two bounds.",
-)
+def _range_codec(lower: str = "100 N s/m", upper: str = "100 kN s/m") -> TableCodec:
+    """Table of a range, with examples of its ends."""
+    return TableCodec(
+        (
+            Declaration(AMOUNT, "Lower bound.", f'{LOWER} = "{lower}"', name=LOWER, attribute="lower"),
+            Declaration(AMOUNT, "Upper bound.", f'{UPPER} = "{upper}"', name=UPPER, attribute="upper"),
+        ),
+        make=_range,
+        about="A free value: an optimiser chooses it between two bounds.",
+    )
+
+
+RANGE = _range_codec()
+
+
+def _range_codec_for(raw: Mapping[str, Any]) -> TableCodec:
+    """The same, whose example of a missing end has the unit of the other one."""
+    try:
+        known = amount(raw.get(LOWER, raw.get(UPPER)))
+    except ValueError:
+        return RANGE
+    return _range_codec(*(format_quantity(factor * known.value, known.unit) for factor in (1e-3, 1e3)))
 
 
 @dataclass(frozen=True)
@@ -88,7 +103,7 @@ class ElementCodec(Codec):
         if not self.free:
             hint = 'Write one, such as "3 kN s/m", perhaps the best that inerter run found (summary.csv).'
             raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)
-        found = RANGE.load(raw, context)
+        found = _range_codec_for(raw).load(raw, context)
         if found is INVALID:
             return INVALID  # type: ignore[no-any-return]
         return kinds_by_unit()[found.lower.unit].of(Free(found.lower.value, found.upper.value, name), name)

@@ -26,6 +26,7 @@ REAL = K | C - it.Gap(5e-4) - (it.Spring(1e6, "ks") | it.Damper(3200.0, "cs")) -
 LOOSE = K | C | it.Spring(1e5, "k2") - (it.Spring(5e4, "k3") | it.Friction(80.0))
 STRUTS = {"linear": K | C - B, "real": REAL, "at a node between springs": LOOSE}
 KINDS = ("fmu", "fmu3")
+CAR = paper_quarter_car(K | C - B)
 
 
 @pytest.fixture
@@ -150,7 +151,7 @@ def test_what_cannot_be_set(kind: str, masters: list[Master], tmp_path: Path) ->
         master.set("c", -1.0)
     assert master.messages == [
         "a fixed parameter cannot change after initialisation",
-        "parameters are positive numbers",
+        "parameters are positive numbers that double precision supports, 1e-12 to 1e15",
     ]
     master.set("f", 0.0)
 
@@ -185,3 +186,29 @@ def test_values_are_finite_numbers(kind: str, tmp_path: Path) -> None:
     assert np.all(np.isfinite(master.get("sprung_acceleration", "strut_force")))
     assert "values are finite numbers" in master.messages
     master.close()
+
+
+@pytest.mark.parametrize("kind", sampled(KINDS, ["fmu"]))
+def test_a_value_that_double_precision_does_not_support_is_refused(
+    kind: str, masters: list[Master], tmp_path: Path
+) -> None:
+    """As in Python, where such an element or mass is refused."""
+    path = it.export(CAR, kind, tmp_path / "car.fmu")
+    for name, value in (("sprung_mass", 5e-324), ("sprung_mass", 1e-13), ("tyre.k", 1e16), ("c", 1e300)):
+        with pytest.raises(Exception, match="failed with status"):
+            Master(path, {name: value})
+    masters.append(master := Master(path))
+    master.set("sprung_force", 1e308)
+    with pytest.raises(Exception, match="failed with status"):
+        master.step(1e30)
+    assert master.messages == ["no finite motion follows from these values"]
+
+
+@pytest.mark.parametrize("kind", sampled(KINDS, ["fmu3"]))
+def test_a_step_of_days_with_friction_is_refused(kind: str, masters: list[Master], tmp_path: Path) -> None:
+    """It would be so many small steps that their number has no place, and nothing moved."""
+    master = opened(masters, paper_quarter_car(REAL), tmp_path, kind)
+    master.set("sprung_force", 100.0)
+    with pytest.raises(Exception, match="failed with status"):
+        master.step(1e5)
+    assert master.messages == ["a step with friction or gaps is at most 20000 s long"]

@@ -17,7 +17,7 @@ from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tie
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.validation import check_positive, is_number
 
-_SMALLEST, _LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
+SMALLEST, LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
 GROUND: Port = {}
 GROUND_ACCELERATION = "ground_acceleration"  # the input of a mechanism on moving ground [m/s^2]
@@ -442,11 +442,11 @@ def check_values(mechanism: Mechanism) -> None:
 
 
 def _check_size(what: str, value: float, unit: str, kind: str, if_large: str) -> None:
-    if value != 0.0 and not _SMALLEST <= value <= _LARGEST:
-        remedy = f"Omit such a small {kind}." if value < _SMALLEST else if_large
+    if value != 0.0 and not SMALLEST <= value <= LARGEST:
+        remedy = f"Omit such a small {kind}." if value < SMALLEST else if_large
         raise MechanismError(
             f"The {what} is {format_quantity(value, unit, 6)}; double precision supports "
-            f"{format_range(_SMALLEST, _LARGEST, unit)}. {remedy}"
+            f"{format_range(SMALLEST, LARGEST, unit)}. {remedy}"
         )
 
 

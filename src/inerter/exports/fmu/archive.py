@@ -27,7 +27,7 @@ from inerter.networks.elements import Network
 from inerter.systems.graph import switching
 from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import input_names, main_outputs
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import LARGEST, SMALLEST, Mechanism
 
 Matrix = NDArray[np.float64]
 _DATE = (1980, 1, 1, 0, 0, 0)  # of all files, so that equal designs are equal archives
@@ -133,6 +133,7 @@ def _header(switches: SwitchingSystem) -> str:
         "SPEED": -1 if switches.speed is None else parameters.index(switches.speed),
     }
     lines = [f"#define {name} {size}" for name, size in sizes.items()]
+    lines += [f"#define SMALLEST {SMALLEST!r}", f"#define LARGEST {LARGEST!r}"]
     for what, several in (("states", system.states), ("inputs", system.inputs), ("outputs", system.outputs)):
         lines.append(f"/* {what}: {', '.join(one.label for one in several)} */")
     lines.append(f"/* parameters: {', '.join(NamedQuantity(one.name, one.unit).label for one in parameters)} */")

@@ -25,6 +25,7 @@
 #define SPAN (NETA + NX + NI)
 #define SWEEPS 10000
 #define LONGEST 2e-5 /* s, with reactions */
+#define MOST 1e9 /* such steps in one */
 #define GLANCE (LONGEST / 2048.0)
 #if NR > 0
 #define LEVELS 9
@@ -155,7 +156,7 @@ static void keep(const Model *model, Flow *flow, const double *whole, double ste
 }
 
 /* The flows of step, step / 2, ... of so many levels: the exponential of the matrix of states and inputs, by a Taylor
-   polynomial and repeated squaring. 0 if memory lacks. */
+   polynomial and repeated squaring. 0 if memory lacks, or numbers are too large. */
 static int discretise(const Model *model, double step, Flow *flows, int levels)
 {
     const size_t size = (size_t)WIDTH * WIDTH + 1;
@@ -174,6 +175,10 @@ static int discretise(const Model *model, double step, Flow *flows, int levels)
     for (i = 0; i < WIDTH; i++) {
         double row = 0.0;
         for (j = 0; j < WIDTH; j++) row += fabs(m[i * WIDTH + j]);
+        if (!isfinite(row)) {
+            free(m);
+            return 0;
+        }
         if (row > norm) norm = row;
     }
     while (halvings < levels - 1 || ldexp(norm, -halvings) > 0.5) halvings++;
@@ -401,7 +406,7 @@ static void advance_part(Model *model, const Flows *flows, double step, int leve
     look(model);
 }
 
-/* The flows of a step; NULL if memory lacks. */
+/* The flows of a step; NULL as `discretise`. */
 static const Flows *flows_of(Model *model, double step)
 {
     Flows *found;
@@ -465,6 +470,7 @@ static double shortened(double length)
     return ldexp(floor(ldexp(length, scale) + 0.5), -scale);
 }
 
+/* A step. 0 if memory lacks, or its end is not finite. */
 static int advance(Model *model, double step)
 {
     const double begin = model->now.time, end = begin + step;
@@ -485,6 +491,8 @@ static int advance(Model *model, double step)
     for (i = 0; i < NE; i++)
         for (k = 0; k < ORDERS; k++) model->now.e[k][i] = cubic(model->now.e, i, k, step);
     model->now.time = end;
+    for (i = 0; i < NX; i++)
+        if (!isfinite(model->now.x[i])) return 0;
     return 1;
 }
 

@@ -94,8 +94,8 @@ static Status write_values(Model *model, const unsigned references[], size_t n, 
             move(model, one.number, value[i]);
             break;
         case PARAMETER:
-            if (!(value[i] > 0.0 || (value[i] == 0.0 && MAY_VANISH[one.number]))) {
-                tell(model, ERROR, "parameters are positive numbers");
+            if (!(value[i] >= SMALLEST && value[i] <= LARGEST) && !(value[i] == 0.0 && MAY_VANISH[one.number])) {
+                tell(model, ERROR, "parameters are positive numbers that double precision supports, 1e-12 to 1e15");
                 return ERROR;
             }
             if (model->is_running && !TUNABLE[one.number]) {
@@ -158,11 +158,18 @@ static Status take_step(Model *model, double time, double step)
 {
     Status status = OK;
     if (!(step >= 0.0) || !isfinite(step) || !isfinite(time)) return ERROR;
+    if (NR > 0 && step > MOST * LONGEST) {
+        tell(model, ERROR, "a step with friction or gaps is at most 20000 s long");
+        return ERROR;
+    }
     model->now.time = time;
     if (!prepare(model)) return ERROR;
     if (STRUT && step > 0.0) status = warn(model);
     if (STRUT) model->now.x[NX - 1] = 0.0; /* its last state is the impulse of its force */
-    if (step > 0.0 && !advance(model, step)) return ERROR;
+    if (step > 0.0 && !advance(model, step)) {
+        tell(model, ERROR, "no finite motion follows from these values");
+        return ERROR;
+    }
     if (STRUT && step > 0.0) model->now.mean = model->now.x[NX - 1] / step;
     return status;
 }

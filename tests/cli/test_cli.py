@@ -18,7 +18,7 @@ from folders import EXAMPLES
 
 import inerter
 import inerter as it
-from inerter.cli.main import call
+from inerter.cli.main import app, call
 
 SMALL = (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8").replace('["J1", "J3", "J5"]', '["J1"]')
 
@@ -123,6 +123,15 @@ def test_bad_study_files(tmp_path: Path, old: str, new: str, words: str, capsys:
     message = fails(["check", str(path)], capsys)
     assert words in message
     assert "bad.toml" in message
+
+
+@pytest.mark.parametrize("command", ["", *(name for name in app if not name.startswith("-"))])
+def test_examples_of_the_help_fit_a_terminal(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """A command that wraps is copied in two halves."""
+    assert call([*filter(None, [command]), "--help"]) == 0
+    examples = (app[command] if command else app).help_epilogue
+    assert examples in capsys.readouterr().out.replace(" \n", "\n")
+    assert max(map(len, examples.splitlines())) <= 80
 
 
 def test_a_template_in_place_of_a_folder_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

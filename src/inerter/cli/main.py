@@ -48,7 +48,8 @@ EXAMPLES = """Examples:
   inerter reproduce    lists the papers
   inerter serve    opens the workbench in the browser
 
-Exit codes: 0 success, 1 failed computation or unreliable fit, 2 invalid input, 130 interrupted by Ctrl-C."""
+Exit codes: 0 success, 1 failed computation or unreliable fit, 2 invalid input,
+130 interrupted by Ctrl-C."""
 
 app = App(
     name="inerter",
@@ -95,7 +96,7 @@ def run(
     help_epilogue="""Examples:
   inerter search examples/search_quarter_car.toml
   inerter search examples/search_absorber.toml -o absorber -j 2
-  inerter search examples/search_absorber.toml -o absorber --resume    after an interruption"""
+  inerter search study.toml -o best --resume    after an interruption"""
 )
 def search(
     study: Path,
@@ -178,8 +179,7 @@ def explain(key: str | None = None, /) -> None:
     Parameters
     ----------
     key
-        A key such as road.speed, or the last part of it; a section such as road; or a name such as J1 or
-        quarter-car. Default: all keys.
+        A key such as road.speed, its last part, a section such as road, or a name such as J1. Default: all keys.
     """
     from inerter.cli.describing import explain as command
 
@@ -305,8 +305,8 @@ def rig(
   inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
   inerter export quarter-car-results --layout S3 --index J1 --to modelica
   inerter export my-car.toml --layout real --to spice --linear
-  inerter export examples/quarter-car.toml --layout S3 --index J1 --to fmu --part strut
-  inerter export examples/half-car.toml --layout S1 --index J1 --to fmu --speed "25 m/s\""""
+  inerter export my-car.toml --to fmu --part strut
+  inerter export my-coach.toml --to fmu --speed "25 m/s\""""
 )
 def export(
     source: Path,

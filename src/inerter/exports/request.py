@@ -109,8 +109,7 @@ class ExportSpec:
         found, notes = {}, []
         for name, network in self.networks.items():
             made = linearise(network)
-            notes += [f"{e.key} {e.label!r} in {name!r} left out" for e in made.left_out]
-            notes += [f"{e.key} {e.label!r} in {name!r} closed" for e in made.closed]
+            notes += made.notes(name)
             if not self.linear:
                 refuse_notes(notes)
             if made.network is None:

@@ -172,6 +172,14 @@ class LinearisedNetwork:
         """Labels of the closed gaps."""
         return tuple(element.label for element in self.closed)
 
+    def notes(self, mount: str) -> list[str]:
+        """What the network at a mount has lost, in words."""
+        return [
+            *(f"{element.key} {element.label!r} in {mount!r} left out" for element in self.left_out),
+            *(f"{element.key} {element.label!r} in {mount!r} taken as closed" for element in self.closed),
+            *(f"{label!r} in {mount!r} carries no force then" for label in self.idle),
+        ]
+
 
 def linearise(network: Network) -> LinearisedNetwork:
     """Linearise a network: neglect friction (no force) and close every gap (rigid contact).

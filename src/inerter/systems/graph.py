@@ -89,9 +89,7 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
                 f"({', '.join(linear.frictions)}): its ends are unconstrained there. Add a spring, damper or inerter."
             )
         networks[mount.name] = linear.network
-        notes += [f"{element.key} {element.label!r} in {mount.name!r} left out" for element in linear.left_out]
-        notes += [f"{element.key} {element.label!r} in {mount.name!r} closed" for element in linear.closed]
-        notes += [f"{label!r} in {mount.name!r} carries no force then" for label in linear.idle]
+        notes += linear.notes(mount.name)
     graph = _expand(mechanism, networks, labels, tuple(notes))
     if all(element.plain for element in mechanism.elements()):
         return graph

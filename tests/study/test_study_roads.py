@@ -168,7 +168,7 @@ def test_a_profile_that_has_changed_is_another_study(load, tmp_path):
     told = json.loads((folder / "versions.json").read_text(encoding="utf-8"))
     assert list(told["inputs"]) == ["road.csv"]
     assert len(told["inputs"]["road.csv"]) == 64
-    assert first.data.attrs["notes"].startswith("the road is the line of waviness 2 through road.csv")
+    assert first.data.attrs["notes"].startswith("the road is the spectrum of waviness 2 fitted to road.csv")
     assert run_study(load(**text), folder, resume=True).computed == 0
     before = (folder / "summary.csv").read_bytes()
     write_profile(tmp_path / "road.csv", 1.001 * heights(1), heights(2))
@@ -205,7 +205,7 @@ def test_a_waviness_that_is_not_two_is_told_first(load, tmp_path, waviness, belo
     write_profile(tmp_path / "road.csv", heights(3, waviness, class_of=16e-6))
     study = load('profile = "road.csv"\nsampling = "filtered"')
     (note,) = study_notes(study)[:1]
-    assert f"has the waviness {format_number(study.line.waviness, 3)}" in note
+    assert f"has a waviness of {format_number(study.line.waviness, 3)}" in note
     assert study.line.waviness == pytest.approx(waviness, abs=0.1)
     warnings = list(study.line.warnings)
     assert len(warnings) == bool(below)
@@ -251,7 +251,7 @@ BAD = {
     "all three": (f'{ROUGH}\nclass = "C"\nprofile = "road.csv"', "", "road", "one of the three"),
     "none": ("", "", "road.roughness", "missing"),
     "no file": ('profile = "roads.csv"', "", "road.profile", "file not found"),
-    "a folder": ('profile = "."', "", "road.profile", "file not found"),
+    "a folder": ('profile = "."', "", "road.profile", "this is a folder"),
     "not a name": ('profile = "a\\u0000b"', "", "road.profile", "."),
     "not text": ("profile = 3", "", "road.profile", "text"),
     "not a table": ('profile = "study.toml"', "", "road.profile", ".toml"),

@@ -116,7 +116,7 @@ def test_a_study_on_a_cluster_is_the_same_to_the_last_byte(tmp_path: Path, there
 @pytest.mark.parametrize(
     ("words", "code", "says"),
     [
-        (["--scheduler", "somewhere"], 2, "expected such as tcp://HOST:8786"),
+        (["--scheduler", "somewhere"], 2, "expected, for example, tcp://HOST:8786"),
         (["--scheduler", "tcp://127.0.0.1:9", "-j", "2"], 2, "Leave --jobs out"),
         (["--tls-cert", "mine.pem"], 2, "without a scheduler"),
         (["--scheduler", "tcp://127.0.0.1:9", "--scheduler-file", "s.json"], 2, "give one of them"),

@@ -61,7 +61,7 @@ def cluster_executor(address: str | None, file: Path | None, tls: Mapping[str, s
     try:
         distributed.comm.get_address_host_port(address or "host:1")
     except ValueError as error:
-        raise StudyError(f'Got the scheduler "{address}" ({error}); expected such as tcp://HOST:8786.') from None
+        raise StudyError(f'Got the scheduler "{address}" ({error}); expected, for example, tcp://HOST:8786.') from None
     if file is not None and not file.is_file():
         raise WorkError(f"{file}: file not found; a scheduler writes it with: dask scheduler --scheduler-file")
     security = distributed.Security(require_encryption=True, **tls) if tls else None

@@ -210,12 +210,12 @@ class MeasuredLine:
     def note(self) -> str:
         """Sentence on the fitted road: source, class, roughness, and the waviness and scatter of the free fit."""
         letter = Road(self.roughness, 1.0).iso8608_class.letter
-        own = f"its own line, through {self.bands} bands from {format_range(self.lowest, self.highest, 'cycle/m', 3)},"
+        band = format_range(self.lowest, self.highest, "cycle/m", 3)
         return (
-            f"the road is the line of waviness 2 through {self.source}, of class {letter} of ISO 8608, with "
-            f"the roughness {format_quantity(self.roughness, 'm^3/cycle', 6)}; {own} "
-            f"has the waviness {format_number(self.waviness, 3)} and "
-            f"a scatter by a factor of {format_number(self.scatter, 3)}{self._correction}"
+            f"the road is the spectrum of waviness 2 fitted to {self.source}: class {letter} of ISO 8608, roughness "
+            f"{format_quantity(self.roughness, 'm^3/cycle', 6)}; a fit with free waviness to {self.bands} bands from "
+            f"{band} has a waviness of {format_number(self.waviness, 3)}, and the bands scatter about it by a factor "
+            f"of {format_number(self.scatter, 3)}{self._correction}"
             + "".join(f". {said.rstrip('.')}" for said in self.reading)
         )
 
@@ -225,10 +225,11 @@ class MeasuredLine:
         change = 100.0 * (1.0 / self.folded - 1.0)
         if abs(change) < 100.0 * _FOLDED:
             return ""
-        what = "of points" if self.sampling == POINTS else "averages over an interval"
+        what = "of points" if self.sampling == POINTS else "of averages over an interval"
         return (
-            f". Taken as heights {what}, which show waves too that are shorter than two intervals, the line is changed "
-            f'by {format_share(0.01 * change, 2, "+")}; if they were filtered before, say sampling = "filtered"'
+            f". Elevations are taken as those {what}, in which waves shorter than two intervals appear as longer ones; "
+            f"that correction is {format_share(0.01 * change, 2, '+')}. If they were filtered before sampling, state "
+            'sampling = "filtered"'
         )
 
     @property
@@ -237,13 +238,13 @@ class MeasuredLine:
         if not _WAVINESS <= self.waviness <= _TO:
             below, above = ("smoother", "rougher") if self.waviness > 2.0 else ("rougher", "smoother")
             yield (
-                f"Beware: {self.source} has a waviness of {format_number(self.waviness, 3)}, and the road that stands "
-                f"for it one of 2: below {format_quantity(self._same, 'cycle/m', 2)} it is {below} than the measured "
-                f"one, above {above}."
+                f"Beware: {self.source} has a waviness of {format_number(self.waviness, 3)}, and the road of the study "
+                f"has 2: below {format_quantity(self._same, 'cycle/m', 2)} it is {below} than the measured one, above "
+                f"{above}."
             )
         if self.bands < _FEWEST:
             yield (
-                f"Beware: the road stands on {self.bands} bands of {self.source} alone, from "
+                f"Beware: the road is fitted to no more than {self.bands} bands of {self.source}, from "
                 f"{format_range(self.lowest, self.highest, 'cycle/m', 2)}; measure a longer profile with closer points."
             )
 
@@ -265,7 +266,8 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
     try:
         if not path.is_file():
             place = "in the folder of this file" if Path(name).name == name else "as seen from this file"
-            raise invalid_entry(name, fault=f"file not found {place}", expected=_PROFILE)
+            fault = "this is a folder" if path.is_dir() else f"file not found {place}"
+            raise invalid_entry(name, fault=fault, expected=_PROFILE)
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         measured = profiles.read(path, road["columns"], road["units"], road["interval"])
         spectrum = road_spectrum(measured, side=side, sampling=sampling)

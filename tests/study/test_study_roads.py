@@ -229,7 +229,7 @@ def test_a_line_through_few_bands_is_told_first(load, tmp_path):
     write_profile(tmp_path / "road.csv", heights(4, points=20, spacing=1.0), spacing=1.0)
     study = load('profile = "road.csv"')
     told = list(study.line.warnings)
-    assert f"{study.line.bands} bands of road.csv alone" in told[-1]
+    assert f"no more than {study.line.bands} bands of road.csv" in told[-1]
     assert told == [one for one in told if one.startswith("Beware")]
 
 

@@ -186,7 +186,8 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     (left, pole), (at_last, _) = modes.remaining(excitation.period), modes.remaining(design.longest)
     change = linear.unlike(speeds, norms)
     peaked = modes.lower_peaks(excitation.period, change)
-    share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
+    with np.errstate(over="ignore"):  # infinite where the model would take away more than there is
+        share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
     unlike = min(misfit + change, 1.0)  # once the lines tell more
     unseen, within_reach = 2.0 * left, True

@@ -173,7 +173,6 @@ def test_verdicts_of_designs(change, sentence):
             "its improvement over the sweep lies between -2.0 % and 7.0 %.",
         ),
         ([0.0, -2.0, -math.inf], "Best ride comfort: no layout is better than S1 at any k."),
-        ([math.nan, math.nan, math.nan], "Best ride comfort: no layout has a finite value."),
     ],
 )
 def test_headlines_of_sweeps(improvement, sentence):
@@ -236,6 +235,33 @@ def test_a_sweep_whose_baseline_has_no_value_shows_those_of_the_others():
     assert sweep_headlines(results)[0].startswith(f"Best ride comfort: S2, {shown}")
     assert sweep_headlines(results)[0].endswith("; no feasible S1.")
     assert shown in terminal_text(results)
+
+
+@pytest.mark.parametrize(
+    ("layouts", "value", "status", "sentence"),
+    [
+        (
+            ["S2"],
+            math.nan,
+            "infeasible: no feasible design",
+            "Best ride comfort: S1, 0.7361 m/s^2 at k = 10 kN/m; no feasible S2.",
+        ),
+        (["S2"], math.inf, "ok", "Best ride comfort: S1, 0.7361 m/s^2 at k = 10 kN/m; S2 has no finite value."),
+        (
+            ["S1", "S2"],
+            math.nan,
+            "infeasible: no feasible design",
+            "Best ride comfort: no layout satisfies the constraints.",
+        ),
+        (["S1", "S2"], math.nan, "failed: singular", "Best ride comfort: no layout has a finite value."),
+    ],
+)
+def test_a_sweep_in_which_layouts_have_no_value(layouts, value, status, sentence):
+    results = sweep(["S1", "S2"], stiffness=[10e3, 100e3])
+    results = with_value(results, value, status, layout=layouts, index="J1")
+    missing = -math.inf if value == math.inf else math.nan
+    results["improvement"].loc[{"layout": layouts, "index": "J1"}] = missing
+    assert sweep_headlines(results)[0] == sentence
 
 
 def test_only_a_doubt_is_marked():

@@ -128,8 +128,9 @@ def extremes(row: xr.DataArray) -> tuple[Extreme, Extreme] | None:
 
 
 def is_compared(results: xr.Dataset, index: str) -> bool:
-    """Whether some layout has an improvement over the baseline, which is not so where the baseline has no value."""
-    return bool(compared_layouts(results)) and bool(np.isfinite(results["improvement"].sel(index=index)).any())
+    """Whether some layout has an improvement over the baseline: at some place, both have a value."""
+    others = compared_layouts(results)
+    return bool(np.isfinite(results["improvement"].sel(layout=others, index=index)).any())
 
 
 def place_text(results: xr.Dataset, place: dict[str, float], *, named: bool = False) -> str:
@@ -238,8 +239,9 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
         value, at = found[names[0]][0]
         text = format_quantity(value, index_unit(results, index))
         where = place_text(results, at, named=True)
-        missing = f"; {_missing_value_clause(results, index, baseline)}" if compared_layouts(results) else ""
-        return f"Best {title}: {_format_equal_layouts(names)}, {text} at {where}{missing}."
+        without = [name for name in names_there if name not in found] if compared_layouts(results) else []
+        missing = [_missing_value_clause(results, index, name) for name in without]
+        return f"{'; '.join([f'Best {title}: {_format_equal_layouts(names)}, {text} at {where}', *missing])}."
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]

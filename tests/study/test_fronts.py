@@ -20,6 +20,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
 from inerter.report.page import report
 from inerter.report.text import table_lines
+from inerter.table import records
 from inerter.tasks.fronts import FrontAnswer, Fronts
 
 FREE = """k = "30 kN/m"
@@ -65,8 +66,10 @@ def test_the_table_has_a_row_a_point_that_is_its_design(found: StudyResult) -> N
             for name, unit in (("c", "N s/m"), ("b", "kg"))
             if name in design.free_values()
         }
-        value = it.evaluate(design.with_values(values), it.TyreLoad(found.study.road), it.Norm()).value
-        assert float(row["tyre-load [N]"]) == pytest.approx(value, rel=1e-9)
+        alone = it.evaluate(design.with_values(values), it.TyreLoad(found.study.road), it.Norm())
+        assert float(row["tyre-load [N]"]) == pytest.approx(alone.value, rel=1e-9)
+        assert 0.0 < float(row["tyre-load_error_bound"]) < 1e-9
+        assert row["tyre-load_standard_error"] == ""
         assert row["status"] == "ok"
     assert [row["knee"] for row in rows].count("yes") == 2
 
@@ -125,6 +128,9 @@ def test_values_of_a_front_have_the_digits_that_their_errors_allow(tmp_path: Pat
         answer = FrontAnswer(**known, statuses=["ok"], jumps=[], knee=0, **errors)
         (sentence,) = Fronts().sentences(TaskResults(study, xr.Dataset(), [answer]))
         assert words in sentence
+        (row,) = records(Fronts().table(TaskResults(study, xr.Dataset(), [answer])))
+        for key, given in (("error_bound", "error_bounds"), ("standard_error", "standard_errors")):
+            assert [row[f"{name}_{key}"] for name in study.trade_off] == errors.get(given, [[None, None]])[0]
 
 
 @pytest.mark.parametrize("method", [it.Norm(), it.StatisticalLinearisation()])

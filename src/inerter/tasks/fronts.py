@@ -119,15 +119,18 @@ class Fronts(Task[FrontAnswer]):
         """Dataset with the fronts: dimensions layout, front_point, criterion, and parameter."""
         points = max([len(front.values) for front in answers] + [1])
         layouts, parameters = data["layout"].values.tolist(), data["parameter"].values.tolist()
-        values = np.full((len(layouts), points, len(study.trade_off)), np.nan)
+        values, errors, bounds = np.full((3, len(layouts), points, len(study.trade_off)), np.nan)
         designs = np.full((len(layouts), points, len(parameters)), np.nan)
         knees, leaps = np.full((len(layouts), points), False), np.full((len(layouts), points), False)
         status = np.full(len(layouts), "missing", dtype=object)
         for front in answers:
             row = layouts.index(front.layout)
             status[row] = front.status_text
-            for i, (numbers, design) in enumerate(zip(front.values, front.parameters, strict=True)):
-                values[row, i] = numbers
+            for i, design in enumerate(front.parameters):
+                numbers = front.quantities(study, i)
+                values[row, i] = [number.value for number in numbers]
+                errors[row, i] = [number.error for number in numbers]
+                bounds[row, i] = [number.bound for number in numbers]
                 designs[row, i] = [design.get(name, np.nan) for name in parameters]
             knees[row, [] if front.knee is None else [front.knee]] = True
             leaps[row, front.jumps] = True
@@ -136,9 +139,12 @@ class Fronts(Task[FrontAnswer]):
             criterion_title=("criterion", [study.objective_title(name) for name in study.trade_off]),
             criterion_unit=("criterion", [study.unit(name) for name in study.trade_off]),
         )
+        of_points = ("layout", "front_point", "criterion")
         attributes = {"long_name": "index at a point of the front", "method_words": _method_words(study)}
         return labelled.assign(
-            front_value=(("layout", "front_point", "criterion"), values, attributes),
+            front_value=(of_points, values, attributes),
+            front_standard_error=(of_points, errors, {"long_name": "standard error of that index"}),
+            front_error_bound=(of_points, bounds, {"long_name": "its largest relative error, sampling apart"}),
             front_parameter=(("layout", "front_point", "parameter"), designs, {"long_name": "parameter at that point"}),
             front_knee=(("layout", "front_point"), knees, {"long_name": "whether it is the knee"}),
             front_jump=(("layout", "front_point"), leaps, {"long_name": "whether the front is interrupted after it"}),
@@ -155,6 +161,7 @@ class Fronts(Task[FrontAnswer]):
             Column(key="point"),
             *(Column(name, label_with_unit(name, study.unit(name))) for name in study.trade_off),
             *(Column(name, label_with_unit(name, free[name]), listed="Parameters") for name in names),
+            *(Column(key=f"{name}_{which}") for name in study.trade_off for which in ("standard_error", "error_bound")),
             *(Column(key=key) for key in ("knee", "jump_after", "status")),
         ]
         rows = [row for one in results.answers for row in _rows(study, one, names)]
@@ -222,16 +229,18 @@ def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterat
     """Rows on the points of a front; those at its ends and its knee are shown."""
     shown = _labelled_points(study, front)
     for i, design in enumerate(front.parameters):
+        values = front.quantities(study, i)
         contents = [
             *(front.layout, shown.get(i), i + 1),
-            *front.quantities(study, i),
+            *values,
             *(Quantity(design[name], study.free_units[name]) if name in design else None for name in parameters),
+            *(number_or_none(error) for value in values for error in (value.error, value.bound)),
             *("yes" if i == front.knee else "", "yes" if i in front.jumps else "", front.statuses[i]),
         ]
         doubt = front.doubt if i == max(shown, default=0) else ""
         yield Row(cells(*contents), status=doubt, shown=i in shown)
     if not front.values:
-        unknown = [None] * (len(study.trade_off) + len(parameters) + 2)
+        unknown = [None] * (3 * len(study.trade_off) + len(parameters) + 2)
         yield Row(cells(front.layout, "", "", *unknown, front.status_text), status=front.doubt)
 
 

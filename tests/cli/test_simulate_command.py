@@ -69,6 +69,22 @@ def test_files_hold_the_same_motion(simulated: tuple[Path, str, str]) -> None:
 
 
 @pytest.mark.usefixtures("undrawn")
+@pytest.mark.parametrize(("step", "is_coarse"), [("0.2 s", True), ("10 ms", False)])
+def test_samples_that_are_too_far_apart_are_told(step: str, is_coarse: bool, tmp_path: Path) -> None:
+    """With four samples in a period of the road, the r.m.s. acceleration is 26 % too small."""
+    path = tmp_path / "car.toml"
+    text = (EXAMPLES / "stick_slip.toml").read_text(encoding="utf-8")
+    path.write_text(text.replace('step = "0.2 ms"', f'step = "{step}"'), encoding="utf-8")
+    out = io.StringIO()
+    with redirect_stdout(out), redirect_stderr(io.StringIO()):
+        assert call(["simulate", str(path), "-o", str(tmp_path / "out")]) == 0
+    told = "Note: Fewer than about ten samples for each oscillation of sprung acceleration, tyre load"
+    assert (told in " ".join(out.getvalue().split())) is is_coarse
+    rms = float(out.getvalue().partition("sprung acceleration")[2].split()[0])
+    assert (rms == pytest.approx(0.5392, rel=0.01)) is not is_coarse
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_json_is_json(rattle: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["simulate", str(rattle), "-o", str(tmp_path / "out"), "--json"]) == 0
     data = json.loads(capsys.readouterr().out)

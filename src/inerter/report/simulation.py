@@ -38,7 +38,7 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
             for name, load in run.static_loads.items()
         },
         "lift_offs": [vars(one) for one in run.lift_offs],
-        "notes": [*result.request.notes, *run.notes],
+        "notes": [*result.notes],
         "nonlinear": {
             n.name: {"kind": n.kind, "strut": n.strut, "events": n.events, "shares": n.shares} for n in result.nonlinear
         },
@@ -134,7 +134,7 @@ def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
         yield f"The figure shows {shown}; another part with --window FROM:TO."
     if window is not None and run.lift_offs:
         yield from _elsewhere(run.lift_offs, window, (begin, end))
-    for note in (*result.request.notes, *run.notes):
+    for note in result.notes:
         yield from wrap(f"Note: {note}", WIDTH)
     yield from wrap(f"Status: {run.status}", WIDTH)
 

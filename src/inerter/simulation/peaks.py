@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from inerter.formatting import format_quantity, format_range
 
 Matrix = NDArray[np.float64]
+_COARSE = 1.0 - np.cos(2.0 * np.pi / 10.0)  # of ten samples for each oscillation
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,19 @@ def peak_of(time: Matrix, values: Matrix) -> Peak:
     """The peak of samples; nan where one of them is."""
     at = int(np.argmax(np.abs(values)))
     return Peak(float(values[at]), float(time[at]))
+
+
+def is_coarse(values: Matrix) -> bool:
+    """Whether even samples are fewer than about ten for each oscillation, so that they miss peaks.
+
+    Lines between every other sample miss those between them by 1 - cos(2 pi/n) of a sine with n samples in a period.
+
+    >>> [is_coarse(np.sin(2.0 * np.pi / n * np.arange(200.0))) for n in (8, 12)]
+    [True, False]
+    """
+    missed = values[1:-1:2] - 0.5 * (values[:-2:2] + values[2::2])
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(missed.size) and bool(np.sqrt(np.mean(missed**2)) > _COARSE * np.std(values))
 
 
 def lift_offs_of(tyre: str, time: Matrix, load: Matrix, static: float) -> Iterator[LiftOff]:

@@ -101,7 +101,7 @@ class ElementCodec(Codec):
             value = amount(raw)
             return kinds_by_unit()[value.unit].of(value.value, name)
         if not self.free:
-            hint = 'Write one, such as "3 kN s/m", perhaps the best that inerter run found (summary.csv).'
+            hint = "Write one, perhaps the best that inerter run found (summary.csv)."
             raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)
         found = _range_codec_for(raw).load(raw, context)
         if found is INVALID:

@@ -15,8 +15,10 @@ from inerter.files.common.folder import FIGURES, WriteMode, open_results
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.simulation.request import SimulationRequest, write_simulation
+from inerter.formatting import format_list, in_words
 from inerter.networks.elements import Element
 from inerter.networks.elements.roles import LinearRole, SwitchRole
+from inerter.simulation.peaks import is_coarse
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.graph import full_graph, switching
 from inerter.systems.outputs import of_mount
@@ -88,6 +90,16 @@ class SimulationResult:
         """Names of the outputs that a summary contains."""
         forces = tuple(name for strut in self.mechanism.struts for name in of_mount(strut))
         return (*self.accelerations, *self.displacements, *self.tyre_loads, *forces)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Notes on the road, on wheel lift-off, and on outputs whose samples are too far apart."""
+        notes = (*self.request.notes, *self.run.notes)
+        coarse = [in_words(name) for name in self.main_outputs if is_coarse(self.run[name])]
+        if not coarse:
+            return notes
+        few = f"Fewer than about ten samples for each oscillation of {format_list(coarse)}"
+        return (*notes, f"{few}: r.m.s. and extreme values may be wrong. Choose a smaller step, and keep every one.")
 
     def rms(self, name: str) -> float:
         """Root mean square of an output; infinite if the motion has grown without bound."""

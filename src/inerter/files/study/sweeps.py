@@ -53,12 +53,8 @@ def number_of(study: Study, place: Place) -> Number:
     if number is None:
         raise unknown_place(study, place)
     if isinstance(number.value, Free | Tied):
-        hint = "Fix it, or leave the sweep out."
-        raise EntryError(
-            fault=f"{place.label} is {'free' if isinstance(number.value, Free) else 'tied to others'}",
-            expected="a number with a fixed value",
-            hint=hint,
-        )
+        fault = f"{place.label} is {'free' if isinstance(number.value, Free) else 'tied to others'}"
+        raise EntryError(fault=fault, expected="a number with a fixed value", hint="Fix it, or leave this out.")
     if element and element not in elements_used(study):
         unused = f"{element} is in no layout, so a sweep changes nothing"
         raise EntryError(fault=unused, expected="an element that a layout uses")

@@ -35,6 +35,16 @@ class Quantity:
     bound: float = nan
     scale: Scale | None = None
 
+    def beside(self, value: float) -> Quantity:
+        """Another value of a sample of which this one is the nominal, with its errors.
+
+        All are off by the same part where random inputs make it, and by as much as the nominal one otherwise.
+        """
+        if not value or not self.value or not isfinite(value / self.value):
+            return Quantity(value, self.unit)
+        part = abs(value / self.value)
+        return Quantity(value, self.unit, self.error * part, self.bound / part)
+
     def __str__(self) -> str:
         if self.scale is None:
             return format_quantity_in_table(self.value, self.unit, error=self.error, bound=self.bound)

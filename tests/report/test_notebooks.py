@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from wang_su import ROAD
 from wang_su import paper_quarter_car as car
@@ -51,6 +53,15 @@ def test_a_doubt_is_said_first_and_markup_is_text() -> None:
     html = doubtful._repr_html_()
     assert html.index("&lt;b&gt;not") < html.index("<table>")
     assert "<b>" not in html
+
+
+def test_values_with_tolerances_have_the_digits_that_their_errors_allow() -> None:
+    known = it.tolerance_analysis(OPTIMUM.design, COMFORT, it.Norm(), spread={"c": 0.1}, samples=16, seed=0)
+    nominal = replace(known.nominal, value=2.9876, error_sources=(it.ErrorSource("one damper", 0.03),))
+    rough = replace(known, nominal=nominal, mean=2.9954, values=np.full(16, 3.1234), worst=3.4321)
+    html = rough._repr_html_()
+    values = re.findall(r"<td>([\d.]+)[^<]*m/s", html)
+    assert values == ["3.0", "3.0", "3.1", "3.4"]
 
 
 def test_a_network_is_a_drawing() -> None:

@@ -67,11 +67,10 @@ def break_even_html(found: BreakEven) -> str:
 
 def tolerance_html(found: Tolerance) -> str:
     """Distribution of an index, and the part of each value in its variance."""
-    facts: list[Fact] = [("nominal", _estimate_quantity(found.nominal)), ("mean", Quantity(found.mean, found.unit))]
-    facts += [
-        ("95 % quantile", Quantity(found.quantile(0.95), found.unit)),
-        ("worst", Quantity(found.worst, found.unit)),
-    ]
+    nominal = _estimate_quantity(found.nominal)
+    numbers = {"mean": found.mean, "95 % quantile": found.quantile(0.95), "worst": found.worst}
+    facts: list[Fact] = [("nominal", nominal)]
+    facts += [(name, nominal.beside(value)) for name, value in numbers.items()]
     facts += [(f"first order of {name}", format_number(share, 3)) for name, share in found.first_order.items()]
     return _html(_facts("Tolerance analysis", facts), found.status)
 

@@ -94,18 +94,11 @@ class ToleranceAnswer(Answer):
     error_bound: float | None = None  # of the nominal value, relative, sampling apart
 
     def quantity(self, name: str) -> Quantity | None:
-        """A number of the distribution with its unit and the errors of the values; None if it is not known.
-
-        All values are off by the same part where random inputs make it, and by as much as the nominal one otherwise.
-        """
+        """A number of the distribution with its unit and the errors of the values; None if it is not known."""
         if name not in self.numbers:
             return None
-        value, nominal = self.numbers[name], abs(self.numbers["nominal"])
-        if not value or not nominal or not np.isfinite(value / nominal):
-            return Quantity(value, self.unit)
-        scatter = np.nan if self.standard_error is None else self.standard_error * abs(value) / nominal
-        bound = np.nan if self.error_bound is None else self.error_bound * nominal / abs(value)
-        return Quantity(value, self.unit, error=scatter, bound=bound)
+        error, bound = (np.nan if known is None else known for known in (self.standard_error, self.error_bound))
+        return Quantity(self.numbers["nominal"], self.unit, error, bound).beside(self.numbers[name])
 
 
 class Tolerances(Task[ToleranceAnswer]):

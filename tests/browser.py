@@ -130,7 +130,13 @@ class Visitor:
         """Wait until the layout has values: those of its optimum, which the page seeks when it opens a study."""
         self.page.wait_for_function(
             "() => document.querySelector('nav.decision')?.innerText.includes('not chosen') === false"
+            " && document.querySelector('.answers[data-being=coming]') === null"
         )
+
+    def pick(self, layout: str) -> None:
+        """Select a layout in the ranking, and wait for its answers."""
+        self.page.locator(f".answers .pick[title='{layout}']").click()
+        self.settled()
 
     def drawn(self) -> None:
         """Wait until the tab that is shown has its answers, and they are drawn."""

@@ -294,7 +294,7 @@ def test_nothing_is_silent_for_two_seconds(what: str, visitor: Visitor) -> None:
 
 def test_an_answer_says_that_it_is_coming_and_a_cleared_network_has_none(visitor: Visitor) -> None:
     page = visitor.page
-    visitor.settled()
+    visitor.pick("S3e")
     page.wait_for_selector(".answers[data-being=current]")
     before, looks = page.evaluate(SHOWN)["numbers"], page.evaluate(LOOKS)
     with held(visitor):

@@ -45,7 +45,7 @@ def test_sixty_steps_in_a_second_end_with_the_numbers_of_the_last(visitor: Any, 
 
 def test_a_number_of_the_vehicle_is_freed_searched_and_saved(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
-    visitor.settled()
+    visitor.pick("S3e")
     before = visitor.values()["J3"]
     page.locator("[data-place='vehicle.tyre_stiffness'] input[type=checkbox]").check()
     assert page.locator("[data-place='road.speed'] input[type=checkbox]").count() == 0  # which no optimiser chooses

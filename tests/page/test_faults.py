@@ -63,7 +63,7 @@ def test_a_text_of_another_dimension_is_an_error_at_its_field(
     assert entry.get_attribute("title") == old
     assert entry.get_attribute("aria-invalid") == "true"
     assert visitor.values() == before
-    _fill(visitor, "elements.ks", "900 kN/m")  # any other change takes the sentence away
+    _fill(visitor, "road.speed", "26 m/s")  # any other change takes the sentence away
     told.wait_for(state="detached")
 
 

@@ -275,3 +275,52 @@ def test_the_optimum_of_a_job_is_not_put_into_another_study(visitor: Visitor) ->
     visitor.settled()
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
     page.locator(".job").first.get_by_role("button", name="Forget").click()  # for other tests on this server
+
+
+def selected(visitor: Visitor) -> str:
+    return str(visitor.page.get_attribute(".answers .pick[aria-pressed=true]", "title"))
+
+
+def test_the_layout_opens_of_which_the_verdict_speaks(
+    served: Served, visitors: Callable[..., Visitor], tmp_path: Path
+) -> None:
+    """Whichever is the last of the file, as one step with the opening; another one that is chosen stays."""
+    visitor = visitors(served).visit()
+    page = visitor.page
+    visitor.chosen()
+
+    def is_best() -> bool:
+        return page.inner_text("#verdict > b").startswith(selected(visitor) + " ")
+
+    assert is_best()
+    assert selected(visitor) != page.evaluate(
+        "() => Object.keys(JSON.parse(sessionStorage.getItem('inerter.document')).study.layouts).at(-1)"
+    )
+    assert page.get_by_role("button", name="Undo").is_disabled()
+    page.locator(".answers .pick[title=S2]").click()
+    page.reload()
+    visitor.settled()
+    assert selected(visitor) == "S2"
+    before = page.input_value("input.title")
+    other = tmp_path / "other.toml"
+    text = (EXAMPLES / "stiffness-sweep.toml").read_text()
+    other.write_text(text.replace('S3 = "k | c - b"\n', 'S3 = "k | c - b"\nS4 = "k | c"\n'))
+
+    def opened() -> str:
+        visitor.open(other)
+        page.wait_for_selector("text=other.toml is open")
+        visitor.settled()
+        return selected(visitor)
+
+    assert opened() == "S3"
+    assert is_best()
+    page.get_by_role("button", name="Undo").click()
+    assert (page.input_value("input.title"), selected(visitor)) == (before, "S2")
+
+    def late(route: Any) -> None:
+        page.locator(".answers .pick[title=S2]").click()
+        route.continue_()
+
+    page.route("**/api/panel/optimise", late, times=1)
+    assert opened() == "S2"
+    assert not is_best()

@@ -60,10 +60,11 @@ async function connect() {
   try {
     const [about, start] = await Promise.all([api.get("about"), begun ? null : api.get("start")]);
     store.dispatch({ type: "told", about });
-    const fresh = start !== null && (await begin(start));
+    const first = start === null ? null : await begin(start);
+    const fresh = first !== null && Object.keys(first.values ?? {}).length === 0;
     if (!about.kernels.ready) await compiled();
     begun = true;
-    const best = fresh ? beginAtBest(store, api) : null;
+    const best = fresh ? beginAtBest(store, api, "first", !("layout" in first)) : null;
     store.dispatch({ type: "connected", connection: "ready" });
     await best;
     if (fresh && store.get().history.past.length <= 1) store.dispatch({ type: "began" });
@@ -79,17 +80,16 @@ async function connect() {
   }
 }
 
-/** Brings the first document, where undoing ends; returns whether its free values are still to be chosen.
+/** Brings the first document, where undoing ends, and returns it.
  * @param {{study: any, stamp: string}} start */
 async function begin(start) {
   const document = await firstDocument(start);
-  const known = document !== null && "layout" in document;
   if (document !== null) {
-    store.change(known ? { type: "restored", document } : { type: "opened", study: document.study });
+    store.change("layout" in document ? { type: "restored", document } : { type: "opened", study: document.study });
     store.dispatch({ type: "began" });
   }
   if (unread) store.say("The link holds no state that this page can read.");
-  return document !== null && Object.keys(document.values ?? {}).length === 0;
+  return document;
 }
 
 /** Waits until the kernels are compiled, and tells which one is under way. */

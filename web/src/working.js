@@ -5,6 +5,7 @@ import { freeIn, layoutsWith, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
+import { questions } from "./questions.js";
 import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
 
 /** @import { Store, State } from "./state/store.js" */
@@ -91,26 +92,27 @@ function atBounds({ active_bounds: bounds }) {
   return names.length ? ` (at a bound: ${names.map((/** @type {any} */ each) => each.name ?? each).join(", ")})` : "";
 }
 
-/** Opens a study, with free values at their best for its first index by norms: a fair beginning. Returns whether it
- * is still open then. @param {Store} store @param {Api} api @param {any} study */
+/** Opens a study, with free values at their best for its first index by norms, and the layout of which the verdict
+ * speaks: a fair beginning. Returns whether it is still open then.
+ * @param {Store} store @param {Api} api @param {any} study */
 export async function openStudy(store, api, study) {
   const gesture = `open ${Date.now()}`;
   store.change({ type: "opened", study }, gesture);
-  await beginAtBest(store, api, gesture);
+  await beginAtBest(store, api, gesture, true);
   return store.get().history.present.study === study;
 }
 
 /** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of
  * which the page tells. A study that is changed meanwhile gets those of what it has become. @param {Store} store
- * @param {Api} api @param {string | null} gesture */
-export async function beginAtBest(store, api, gesture = null) {
-  const { turn, history: { present: { study } } } = store.get();
+ * @param {Api} api @param {string} gesture @param {boolean} [selects] whether nobody has chosen a layout yet */
+export async function beginAtBest(store, api, gesture, selects = false) {
+  const { turn, history: { present: { study, layout } } } = store.get();
   const [index] = indicesIn(study);
   const method = quickMethod(store.get())?.name;
   if (!index || !method) return;
   store.dispatch({ type: "choosing", study });
   try {
-    const designs = await untilFound(() => bestAtFirst(api, study, index, method));
+    const { designs, isDecided } = await untilFound(() => bestAtFirst(api, study, index, method));
     const { present } = store.get().history;
     const open = designs.filter(({ layout }) => own(present.values, layout) === undefined); // nobody has chosen those
     if (open.length > 0 && present.study === study) {
@@ -118,6 +120,7 @@ export async function beginAtBest(store, api, gesture = null) {
       const doubts = doubted(open.flatMap(membersOf));
       if (doubts) store.say(doubts.trim());
     }
+    if (selects && isDecided && present.layout === layout) await selectBest(store, api, gesture);
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   } finally {
@@ -125,20 +128,36 @@ export async function beginAtBest(store, api, gesture = null) {
   }
   const { present } = store.get().history;
   const isChanged = present.study !== study && store.get().turn === turn;
-  if (isChanged && Object.keys(present.values).length === 0) await beginAtBest(store, api, gesture);
+  if (isChanged && Object.keys(present.values).length === 0) await beginAtBest(store, api, gesture, selects);
 }
 
-/** The best designs of all layouts; none where nothing is free, or where they take longer than a person waits.
- * @param {Api} api @param {any} study @param {string} index @param {string} method @returns {Promise<any[]>} */
+/** Selects the layout of which the verdict speaks. @param {Store} store @param {Api} api @param {string} gesture */
+async function selectBest(store, api, gesture) {
+  const { present } = store.get().history;
+  const question = questions(store.get()).find(({ panel }) => panel === "decision");
+  if (question === undefined) return;
+  const { panel, key, path, body } = question;
+  store.dispatch({ type: "asked", panel, question: key });
+  const value = await postNow(api, path, "opening", body);
+  store.dispatch({ type: "answered", panel, question: key, value });
+  const [{ rank, layout }] = value.rows;
+  if (rank === 1 && store.get().history.present === present) store.change({ type: "selected", layout }, gesture);
+}
+
+/** The best designs of all layouts; none where nothing is free, or where they take longer than a person waits. And
+ * whether the verdict is about all layouts then. @param {Api} api @param {any} study @param {string} index
+ * @param {string} method @returns {Promise<{designs: any[], isDecided: boolean}>} */
 async function bestAtFirst(api, study, index, method) {
   const [first] = Object.keys(study.layouts ?? {});
   const [parts, small] = await Promise.all([api.post("study/parts", { study }),
     isSmall(api, study, first).catch(() => null)]); // null where its network is free
   const layouts = Object.keys(parts.layouts).filter((name) => parts.layouts[name].free_networks.length === 0);
-  if (layouts.every((name) => parts.layouts[name].free.length === 0)) return [];
-  if (!(small ?? await isSmall(api, study, layouts[0]))) return [];
+  const isDecided = layouts.length > 1 && layouts.length === Object.keys(parts.layouts).length;
+  if (layouts.every((name) => parts.layouts[name].free.length === 0)) return { designs: [], isDecided };
+  if (!(small ?? await isSmall(api, study, layouts[0]))) return { designs: [], isDecided: false };
   const body = { study, layouts, indices: [index], method, methods: [method] };
-  return (await postNow(api, "panel/optimise", "opening", body)).designs;
+  const { designs } = await postNow(api, "panel/optimise", "opening", body);
+  return { designs, isDecided };
 }
 
 const TRIES = 5; // of a server that does not answer, a second apart

@@ -311,7 +311,7 @@ def decimal_places(value: float, bound: float = math.nan, error: float = math.na
     return max(min(fine, coarse), least)
 
 
-def shown_decimals(value: float, error: float, bound: float, digits: int) -> int | None:
+def shown_decimals(value: float, error: float, bound: float, digits: int = _DIGITS) -> int | None:
     """Decimal places of a value with a standard error and a relative error `bound`; None unless it is finite.
 
     Where the standard error is not shown, there are at most `digits` significant digits.

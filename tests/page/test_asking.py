@@ -22,6 +22,7 @@ from inerter.app.designs import design_of
 from inerter.app.documents import study_from
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.running import run_simulation
+from inerter.indices.registry import index_choices
 
 FIXED = {"k": '"120 kN/m"', "c": '"3 kN s/m"', "b": '"100 kg"'}
 ONE_INDEX = 'indices = ["J1"]'
@@ -185,6 +186,33 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         page.get_by_role("button", name=f"Delete the limit: {name}").click()
     page.wait_for_selector(".limits", state="detached")
     assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
+
+
+@pytest.mark.parametrize("example", ["quarter-car", "limits"])
+def test_the_weighting_of_an_index_is_set_in_the_goal(visitor: Visitor, tmp_path: Path, example: str) -> None:
+    """From the declarations of the library; where no section of the file defines the index, one does then."""
+    page = visitor.page
+    if example != "quarter-car":
+        visitor.open(EXAMPLES / f"{example}.toml")
+        page.wait_for_selector(f"text={example}.toml is open")
+    page.click("#step-2")
+    weighting = page.locator("select[name=weighting]")
+    (declared,) = index_choices("J1")
+    assert weighting.locator("option").all_inner_texts() == ["none", *declared.options]
+    for chosen in ("Wd", ""):
+        weighting.select_option(chosen)
+        wait_until(lambda chosen=chosen: ("Wd" in page.inner_text("#step-2")) == bool(chosen))
+        visitor.settled()
+        tables = tomllib.loads(visitor.download("Study file", tmp_path).read_text())
+        study, goal = study_from(tables), "comfort"
+        assert study.indices[0] == goal
+        assert tables["indices"][goal] == {"kind": "ride-comfort", **({"weighting": chosen} if chosen else {})}
+        shown = visitor.values()[goal]
+        layout = str(page.get_attribute(".answers .pick[aria-pressed=true]", "title"))
+        values = json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"]
+        design = design_of(study, layout, values[layout])
+        assert shown == it.evaluate(design.vehicle, study.index(goal), it.Norm()).value
+        page.click("#step-2")
 
 
 def test_a_limit_on_several_struts_names_none_of_them(visitor: Visitor) -> None:

@@ -22,7 +22,8 @@ from inerter.files.study import KIND
 from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
 from inerter.formatting import capital, typeset_unit, unit_choices
 from inerter.identification.models import MODELS
-from inerter.indices.registry import INDICES
+from inerter.indices.names import index_words
+from inerter.indices.registry import INDICES, index_choices
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import METHODS, averages, method_settings, searches, words_of
 from inerter.networks.elements import Element
@@ -116,7 +117,9 @@ def _index(symbol: str) -> dict[str, Any]:
     return {
         "symbol": symbol,
         **{name: text for name in ("title", "unit", "response") if isinstance(text := getattr(kind, name), str)},
+        "words": index_words()[symbol],
         "settings": _fields(fields_of(kind)),
+        "choices": [dataclasses.asdict(one) for one in index_choices(symbol) if one.options],
     }
 
 

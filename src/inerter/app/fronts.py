@@ -18,6 +18,7 @@ from inerter.files.study.parts import run_part
 from inerter.files.study.running import csv_of
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
+from inerter.formatting import shown_decimals
 from inerter.methods.registry import methods_that, searches
 from inerter.table import csv_rows, csv_text
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
@@ -48,11 +49,13 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
 
 def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:
     points = []
-    for values, parameters, said in zip(found.values, found.parameters, found.statuses, strict=True):
+    for i, (values, parameters, said) in enumerate(zip(found.values, found.parameters, found.statuses, strict=True)):
         status, message = Status.parts(said)
+        decimals = [shown_decimals(one.value, one.error, one.bound) for one in found.quantities(study, i)]
         points.append(
             {
                 "values": dict(zip(study.trade_off, values, strict=True)),
+                "decimals": dict(zip(study.trade_off, decimals, strict=True)),
                 "parameters": parameters,
                 "texts": texts_of(study, parameters),
                 "status": status,

@@ -2,15 +2,20 @@
 
 import { numbersOf } from "../library.js";
 import { Chip, Select, formHandler } from "../parts/controls.js";
+import { Field } from "../parts/field.js";
 import { html } from "../parts/html.js";
+import { freshName } from "../network/algebra.js";
 import { answerOf } from "../questions.js";
-import { entryAt, indicesIn } from "../state/document.js";
+import { entryAt, indicesIn, own } from "../state/document.js";
 import { indexChoices, indexName } from "./answers.js";
 import { Entry } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @typedef {{path: string[], sense: string, value: string | number}} Limit  of what, as the keys of its table say
  * it */
+
+/** A setting of an index: one of `options`, or a quantity.
+ * @typedef {{key: string, sentence: string, options?: string[], example: string}} Setting */
 
 const SENSES = ["at_most", "at_least", "equal"];
 const PLACE = ["study", "subject_to"];
@@ -67,15 +72,65 @@ export function AskedPanel({ store }) {
   </div>`;
 }
 
+/** Settings of an index, as the library declares them: words to choose from, and quantities, which an index that the
+ * file does not define has in common with all others. @param {{store: Store, index: string}} props */
+export function IndexSettings({ store, index }) {
+  const state = store.get();
+  const { study } = state.history.present;
+  const isOwn = own(study.indices, index) !== undefined;
+  const { choices = [], settings = [] } = kindOfIndex(state, index) ?? {};
+  /** @param {string} key */
+  const here = (key) => entryAt(study, ["indices", index, key]) ?? entryAt(study, ["study", key]) ?? "";
+  /** @param {string} key */
+  const placer = (key) => (/** @type {string} */ value) => store.change({ type: "placed",
+    place: isOwn ? ["indices", index, key] : ["study", key], value: value || undefined });
+  /** @param {string} key */
+  const chooser = (key) => (isOwn ? placer(key) : (/** @type {string} */ value) => define(store, index, key, value));
+  return [...choices, ...settings].map((/** @type {Setting} */ { key, sentence, options, example }) => html`<p
+    class="row" key=${key} title=${sentence}>${options ? html`<${Select} label=${key} name=${key} value=${here(key)}
+        choices=${[["", "none"], ...options]} set=${chooser(key)} />`
+      : html`<label>${key.replaceAll("_", " ")} <${Field} class="entry" text=${here(key)} placeholder=${`such as ${
+        example}`} done=${placer(key)} /></label>`}</p>`);
+}
+
+/** Defines an index with a setting in the place of one that has none, in one step.
+ * @param {Store} store @param {string} index @param {string} key @param {string} value */
+function define(store, index, key, value) {
+  const state = store.get();
+  const { study } = state.history.present;
+  const { words, title } = kindOfIndex(state, index);
+  const name = freshName(title.split(" ").at(-1), [...Object.keys(study.indices ?? {}),
+    ...state.about.indices.flatMap((/** @type {any} */ { symbol, words }) => [symbol, words])]);
+  const gesture = `define ${Date.now()}`;
+  store.change({ type: "placed", place: ["indices", name], value: { kind: words, [key]: value } }, gesture);
+  for (const list of ["indices", "trade_off"]) {
+    const named = entryAt(study, ["study", list]);
+    if (named?.includes(index)) store.change({ type: "placed", place: ["study", list],
+      value: named.map((/** @type {string} */ each) => (each === index ? name : each)) }, gesture);
+  }
+  store.dispatch({ type: "rested" });
+  store.look({ index: name });
+}
+
+/** What is chosen in words for an index, such as its weighting. @param {State} state @param {string} index
+ * @returns {string[]} */
+export const chosenFor = (state, index) => (kindOfIndex(state, index)?.choices ?? [])
+  .flatMap((/** @type {Setting} */ { key }) => entryAt(state.history.present.study, ["indices", index, key]) ?? []);
+
+/** The row of an index's kind. @param {State} state @param {string} index @returns {any} */
+function kindOfIndex({ about, history }, index) {
+  const kind = entryAt(history.present.study, ["indices", index, "kind"]) ?? index;
+  return about?.indices.find((/** @type {any} */ { symbol, words }) => symbol === kind || words === kind);
+}
+
 /** The indices that there are, with those that the file has of its own. @param {State} state
  * @returns {{symbol: string, title: string}[]} */
 function indexNames(state) {
   const { study } = state.history.present;
   const known = state.about?.indices ?? [];
-  const own = [...Object.keys(study.indices ?? {}),
-    ...indicesIn(study)].filter((symbol) =>
-      !known.some((/** @type {any} */ each) => each.symbol === symbol));
-  return [...known, ...[...new Set(own)].map((symbol) => ({ symbol, title: symbol }))];
+  const others = [...Object.keys(study.indices ?? {}), ...indicesIn(study)].filter((symbol) =>
+    !known.some((/** @type {any} */ each) => each.symbol === symbol));
+  return [...known, ...[...new Set(others)].map((symbol) => ({ symbol, title: symbol }))];
 }
 
 /** What a limit can be put on, for a `Select`. @param {State} state */

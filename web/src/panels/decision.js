@@ -7,7 +7,7 @@ import { allDesigns, answerOf, designOf, goalOf, soughtAnswer, staleLayouts } fr
 import { isSearched, searchedLayouts, unchosenIn } from "../library.js";
 import { quantity, takenApart } from "../state/scale.js";
 import { isBeingChosen } from "../asking.js";
-import { AskedPanel } from "./asked.js";
+import { AskedPanel, IndexSettings, chosenFor } from "./asked.js";
 import { indexWords, indicesOf, isWord } from "./answers.js";
 import { marginTold } from "./margins.js";
 import { problemsOf } from "./values.js";
@@ -73,7 +73,7 @@ function Goal({ store }) {
   const state = store.get();
   const indices = indicesOf(state);
   const goal = indices.find(({ symbol }) => symbol === goalOf(state));
-  const answer = goal ? indexWords(goal, ", ") : "None";
+  const answer = goal ? [indexWords(goal, ", "), ...chosenFor(state, goal.symbol)].join(", ") : "None";
   return html`<details class="menu step">
     <summary id="step-2"><small>2 Goal</small><b title=${answer}>${answer}</b></summary>
     <div class="menu-body">
@@ -81,6 +81,7 @@ function Goal({ store }) {
         ${indices.map(({ symbol, title }) => html`<label key=${symbol}><input type="radio" name="goal" value=${symbol}
           checked=${symbol === goal?.symbol} onChange=${() => store.look({ index: symbol })} />
           ${title} ${!isWord(symbol) && title !== symbol && html`<b>${symbol}</b>`}</label>`)}</fieldset>
+      ${goal && html`<${IndexSettings} store=${store} index=${goal.symbol} />`}
       <${Select} label="Method" ...${methodChoice(store)} />
       <${AskedPanel} store=${store} />
     </div></details>`;

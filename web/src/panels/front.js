@@ -7,7 +7,7 @@ import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
-import { printed, rounded, shown, times, unitFor, withUnit } from "../state/scale.js";
+import { placed, printed, rounded, scaled, shown, times, unitFor, withUnit } from "../state/scale.js";
 import { takeAndTell } from "../working.js";
 import { indexChoices, indicesOf, isWord, signed } from "./answers.js";
 import { Files } from "./files.js";
@@ -17,8 +17,9 @@ import { Files } from "./files.js";
 /** @import { Declaration, Point as Place } from "../plots/layout.js" */
 /** @typedef {{status: string, message?: string}} Outcome */
 /** `improvements`: per cent below the best of the baseline, by index; `network`: where the points have several.
- * @typedef {Outcome & {values: {[index: string]: any}, texts: {[name: string]: string}, network?: string,
- * improvements?: {[index: string]: number | null}}} Point */
+ * `decimals`: the places that the errors of the values allow, where they have any.
+ * @typedef {Outcome & {values: {[index: string]: any}, decimals?: {[index: string]: number | null},
+ * texts: {[name: string]: string}, network?: string, improvements?: {[index: string]: number | null}}} Point */
 /** `knee`: the place of the knee among the points.
  * @typedef {Outcome & {layout: string, knee: number | null, points: Point[],
  * problem_digests?: string[]}} Front */
@@ -146,8 +147,7 @@ function declared(indices, drawn, fronts, colours) {
       const { front: { layout }, point: { status, values, texts, network }, isKnee } = entry;
       const [x, y] = drawn.map((index) => values[index]);
       const name = `${isOk(status) ? "" : `${status}: `}${layout}${isKnee ? ", the knee" : ""}`;
-      const read = indices.map(({ index, unit, factor }) =>
-        `${index} ${shown(times(values[index], factor), 4)} ${printed(unit)}`.trim());
+      const read = indices.map((each) => `${each.index} ${told(entry.point, each)} ${printed(each.unit)}`.trim());
       return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry,
         lines: [name, read.join(",  "), network ?? "", valuesIn(texts)].filter(Boolean),
         label: `${[name, network].filter(Boolean).join(", ")}: ${read.join(", ")}; take it into the editor` };
@@ -162,6 +162,12 @@ function lineThrough(entries, first, second) {
     (i > 0 && point.network !== entries[i - 1].point.network ? [{ x: point.values[first], y: null }] : [])
       .concat({ x: point.values[first], y: point.values[second] }));
   return { x: places.map(({ x }) => x), y: places.map(({ y }) => y) };
+}
+
+/** The value of an index at a point, in the digits that its error allows. @param {Point} point @param {Index} index */
+function told({ values, decimals }, { index, factor }) {
+  const { value, decimals: places } = scaled({ value: values[index], decimals: decimals?.[index] }, factor);
+  return typeof places === "number" ? placed(value, places) : shown(value, 4);
 }
 
 /** Values of a design in few digits. @param {{[name: string]: string}} texts */
@@ -197,12 +203,12 @@ function Card({ entry, fronts, indices, baseline, take }) {
     ${!isOk(point.status) && html`<p class="problem"><b>Unreliable.</b> ${point.status}</p>`}
     <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [other.name] : []),
         ...(improvements ? [[`below ${baseline}`, `relative to the lowest value of ${baseline}`]] : [])]}>
-      ${indices.map(({ index, title, unit, factor }) => html`<tr key=${index}>
-        <th scope="row" title=${title}>${index}</th>
-        <td class="number" data-value=${point.values[index]}>${shown(times(point.values[index], factor), 4)}
-          ${" "}<span class="unit">${printed(unit)}</span></td>
-        ${other && html`<td class="number">${shown(times(other.point.values[index], factor), 4)}</td>`}
-        ${improvements && html`<td class="number">${signed(improvements[index])}</td>`}</tr>`)}
+      ${indices.map((each) => html`<tr key=${each.index}>
+        <th scope="row" title=${each.title}>${each.index}</th>
+        <td class="number" data-value=${point.values[each.index]}>${told(point, each)}
+          ${" "}<span class="unit">${printed(each.unit)}</span></td>
+        ${other && html`<td class="number">${told(other.point, each)}</td>`}
+        ${improvements && html`<td class="number">${signed(improvements[each.index])}</td>`}</tr>`)}
     <//>
     <p>${valuesIn(point.texts)}</p>
     ${other && html`<p>${sentenceOf(point, other, indices)}</p>`}

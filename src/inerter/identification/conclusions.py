@@ -73,6 +73,9 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         p = _parameter(solution, i, values[name])
         held = solution.adhesion.of(i) if stuck[i] else None
         verdict = replace(identifiability(p, found[i], space, i, comparisons), held=held)
+        if solution.noisy[i] and not stuck[i]:
+            p = replace(p, interval=(math.nan, math.nan), standard_error=math.nan, profile=())
+            verdict = replace(verdict, verdict=Verdict.NOISY)
         p, verdict = (p, verdict) if doubt is None else _withhold(p, verdict, draft)
         parameters[name], identifiable[name] = (p if verdict else replace(p, value=math.nan)), verdict
     planned = [] if doubt is not None else list(suggestions(space, parameters, identifiable, comparisons))

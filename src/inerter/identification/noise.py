@@ -28,6 +28,7 @@ class Whitening:
     weight: Matrix  # (samples,) 1/N, zero where samples are not compared
     centre: Matrix  # (bands,) frequencies in cycles a sample, and ...
     density: Matrix  # ... the spectrum of the weighted residuals there, 1 if they were white and of size one
+    lines: Matrix | None = None  # a spectrum by which that of the bands is multiplied, at `lines_of` the residuals
     offsets: dict[int, Matrix] = field(default_factory=dict)  # cached, by size
 
     def __call__(self, residual: Matrix) -> Matrix:
@@ -35,9 +36,11 @@ class Whitening:
         size = residual.shape[0]
         weight = self.weight[:size] if residual.ndim == 1 else self.weight[:size, None]
         white = weight * residual
-        if self.centre.size:
-            padded = next_fast_len(size + size // 8, real=True)
-            spectrum = np.exp(0.5 * np.interp(np.fft.rfftfreq(padded), self.centre, np.log(self.density)))
+        if self.centre.size or self.lines is not None:
+            padded, frequency = _padded(size), lines_of(size)
+            spectrum = np.ones(frequency.size) if self.lines is None else np.sqrt(self.lines)
+            if self.centre.size:
+                spectrum = spectrum * np.exp(0.5 * np.interp(frequency, self.centre, np.log(self.density)))
             divided = np.fft.rfft(white, padded, axis=0)
             divided /= spectrum if residual.ndim == 1 else spectrum[:, None]
             white = np.fft.irfft(divided, padded, axis=0)[:size]
@@ -48,6 +51,15 @@ class Whitening:
         if size not in self.offsets:
             self.offsets[size] = self(np.ones(size))
         return self.offsets[size]
+
+
+def lines_of(size: int) -> Matrix:
+    """Frequencies, in cycles a sample, of the lines at which so many samples are whitened."""
+    return np.asarray(np.fft.rfftfreq(_padded(size)))
+
+
+def _padded(size: int) -> int:
+    return int(next_fast_len(size + size // 8, real=True))
 
 
 def uniform_whitening(kept: NDArray[np.bool_], level: float) -> Whitening:
@@ -72,6 +84,16 @@ def noise_whitening(draws: Matrix, noise: float, compared: NDArray[np.bool_]) ->
     near = np.convolve(of_encoder, window, "same") / np.convolve(np.ones(of_encoder.size), window, "same")
     weight = np.where(compared, 1.0 / np.sqrt(noise**2 + near), 0.0)
     return Whitening(weight, *_spectrum(np.clip(weight * draws, -5.0, 5.0), float(np.mean(compared))))
+
+
+def steady_whitening(draws: Matrix, noise: float, compared: NDArray[np.bool_], lines: Matrix) -> Whitening:
+    """The whitening by residuals of noise (draws, samples) [N] whose spectrum is the same at all instants.
+
+    Its spectrum is `lines`, over that of the load cell's `noise` [N], times one of bands.
+    """
+    by = replace(uniform_whitening(compared, noise), lines=lines)
+    centre, density = _spectrum(np.clip(by(draws.T).T, -5.0, 5.0), float(np.mean(compared)))
+    return replace(by, centre=centre, density=density)
 
 
 def _spectrum(values: Matrix, share: float) -> tuple[Matrix, Matrix]:

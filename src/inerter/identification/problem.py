@@ -16,7 +16,7 @@ from inerter.identification.models import on_rig
 from inerter.identification.noise import Whitening
 from inerter.identification.parameter_space import Space
 from inerter.networks.elements import Element, Free, Network
-from inerter.networks.transform import map_elements
+from inerter.networks.transform import map_elements, with_values
 from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise, with_element_values
@@ -25,6 +25,7 @@ from inerter.work.chunks import Item, Result
 from inerter.work.running import map_items, over_threads
 
 Matrix = NDArray[np.float64]
+NoiseSpectrum = Callable[[Network], Matrix]
 _FEWEST = 100  # samples that are compared
 FAILED = 1e3  # whitened residual of a simulation that fails
 
@@ -40,6 +41,7 @@ class FitProblem:
     offset: bool = True  # whether the load cell has a free offset in each record
     assumed: tuple[Hypothesis, ...] = ()
     horizon: float = 1.0  # share of the information of each record that is compared
+    spectra: tuple[NoiseSpectrum, ...] = ()  # of the noise of each record, where whitenings depend on the values
     systems: dict[tuple[object, ...], PiecewiseSystem] = field(default_factory=dict)  # by load cell and zeros
 
     def __getstate__(self) -> dict[str, object]:
@@ -99,7 +101,9 @@ class FitProblem:
     def residual(self, coordinates: Matrix) -> Matrix:
         """Whitened residuals of all records, one after the other."""
         parts = []
-        for e, w, force in zip(self.experiments, self.whitenings, self.forces(coordinates), strict=True):
+        for e, w, force in zip(
+            self.experiments, self._whitenings_at(coordinates), self.forces(coordinates), strict=True
+        ):
             size = self.samples(e)
             if force is None:
                 parts.append(np.where(w.weight[:size] > 0.0, FAILED, 0.0))
@@ -110,6 +114,17 @@ class FitProblem:
                 white = white - column * (column @ white / max(float(column @ column), 1e-300))
             parts.append(white)
         return np.concatenate(parts)
+
+    def spectra_at(self, coordinates: Matrix) -> list[Matrix]:
+        """The spectra of the noise in each record with these values, where whitenings depend on them."""
+        device = with_values(self.rig.device, self.space.values_by_name(coordinates))
+        return [spectrum(device) for spectrum in self.spectra]
+
+    def _whitenings_at(self, coordinates: Matrix) -> Sequence[Whitening]:
+        if not self.spectra:
+            return self.whitenings
+        pairs = zip(self.whitenings, self.spectra_at(coordinates), strict=True)
+        return [replace(w, lines=lines, offsets={}) for w, lines in pairs]
 
     def residuals(self, points: Sequence[Matrix]) -> list[Matrix]:
         """The residuals at several points, over the cores."""

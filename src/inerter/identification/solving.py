@@ -19,6 +19,7 @@ from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, 
 from inerter.identification.noise import noise_whitening, uniform_whitening, whitening_of
 from inerter.identification.options import FitOptions
 from inerter.identification.parameter_space import space_of
+from inerter.identification.passed_noise import decided_by_noise
 from inerter.identification.problem import FitProblem
 from inerter.identification.residual_tests import NoiseReference, check_parts, noise_reference
 from inerter.identification.scales import ScaleEffects, scale_effects
@@ -56,6 +57,7 @@ class SolvedFit:
     options: FitOptions
     adhesion: Adhesion
     scales: ScaleEffects | None
+    noisy: NDArray[np.bool_]  # values that the noise of the displacement decides
 
 
 def solve(
@@ -100,7 +102,7 @@ def solve(
     return SolvedFit(
         problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(findings),
         drawn.predicted, judge, judge.misfit(problem, optimum.point),
-        asked, adhesion, scale_effects(problem, optimum, asked),
+        asked, adhesion, scale_effects(problem, optimum, asked), decided_by_noise(problem, optimum, found, asked.seed),
     )  # fmt: skip
 
 

@@ -43,6 +43,8 @@ def value_and_interval(found: IdentificationResult, name: str) -> tuple[str, str
         return _WORDS[what], f"{format_range(low, high, parameter.unit, 3)} if explained so"
     if what is ResultKind.VALUE:
         return format_with_interval(parameter.best, low, high, parameter.unit)
+    if isnan(low):
+        return _WORDS[what], ""
     below = low > (0.0 if bounds is None else bounds[0] * (1.0 + 1e-9))
     above = bounds is None or high < bounds[1] * (1.0 - 1e-9)
     if above and not below:

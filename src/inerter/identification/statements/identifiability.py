@@ -21,6 +21,7 @@ class Verdict(StrEnum):
     ANY = "any value"  # between the bounds of the search
     BELOW = "below"  # the upper end alone is known
     ABOVE = "above"  # the lower end alone is known
+    NOISY = "noise"  # the noise of the displacement decides the value
     WITHHELD = "withheld"  # the fit is unreliable
     CONDITIONAL = "conditional"  # the same, but a hypothesis explains why, and gives a range
     UNPREDICTABLE = "unpredictable"  # the force of the device cannot be predicted
@@ -111,6 +112,10 @@ _SENTENCES: Mapping[Verdict, Callable[[Identifiability], str]] = {
     Verdict.BELOW: _below,
     Verdict.ABOVE: lambda i: (
         f"not identifiable: only a lower bound, {format_quantity(i.interval[0], i.unit)}, is known. {_cause(i)}"
+    ),
+    Verdict.NOISY: lambda i: (
+        "not identifiable: the noise of the displacement, which passes through the device, decides its value more than "
+        "the motion does. Excite with several frequencies, up to those at which its springs take a tenth of the motion."
     ),
     Verdict.WITHHELD: lambda i: "withheld: the fit is unreliable.",
     Verdict.CONDITIONAL: lambda i: (

@@ -1,0 +1,48 @@
+"""Noise of the displacement that passes through a device decides no value of a fit."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import inerter as it
+from inerter.identification.experiment import experiment_of
+from inerter.identification.passed_noise import passed_noise
+from inerter.identification.statements.identifiability import Verdict
+
+TRUTH = {"ks": 2.379e6, "cs": 10974.0, "b": 41.49}
+RIG = it.VirtualRig(
+    (it.Spring(TRUTH["ks"]) | it.Damper(TRUTH["cs"])) - it.Inerter(TRUTH["b"]),
+    seed=0, sampling=500.0, encoder_noise=3e-7, force_noise=0.05, force_resolution=0.05,
+)  # fmt: skip
+
+
+def test_one_low_frequency_gives_no_value_of_an_elastic_device_that_noise_decides() -> None:
+    """Of all stiffnesses, the noise alone prefers one a twelfth as large."""
+    fit = it.identify(RIG.run(it.cosine(6e-4, 2.3), 3.0), "elastic", starts=16)
+    ks = fit.parameters["ks"]
+    assert fit.identifiable["ks"].verdict is Verdict.NOISY
+    assert "noise of the displacement" in fit.identifiable["ks"].sentence
+    assert math.isnan(ks.value)
+    assert all(map(math.isnan, ks.interval))
+    for name in filter(fit.identifiable.get, TRUTH):
+        low, high = fit.parameters[name].interval
+        assert low <= TRUTH[name] <= high, name
+
+
+def test_a_sweep_of_the_same_device_has_all_its_values() -> None:
+    fit = it.identify(RIG.run(it.chirp(2e-4, 1.0, 15.0, 3.2), 3.0), "elastic", starts=16)
+    assert fit.status.ok
+    for name, truth in TRUTH.items():
+        low, high = fit.parameters[name].interval
+        assert fit.identifiable[name], name
+        assert low <= truth <= high, name
+
+
+def test_an_inertance_passes_noise_as_the_fourth_power_of_frequency() -> None:
+    record = RIG.run(it.cosine(6e-4, 2.3), 3.0).with_notes(force_noise=0.1, displacement_noise=2e-7)
+    spectrum = passed_noise(experiment_of(record))
+    slow = spectrum.omega < 2.0 * np.pi * 10.0  # far below the bandwidth of the smoothed displacement
+    expected = (50.0 * spectrum.omega[slow] ** 2 * 2e-7 / 0.1) ** 2
+    np.testing.assert_allclose(spectrum(it.Inerter(50.0))[slow] - 1.0, expected, rtol=0.01)

@@ -149,7 +149,7 @@ WRONG = {
     ),
     "unknown output": (lambda: state_space(car(), outputs="comfort"), "Unknown output 'comfort'"),
     "unknown input": (lambda: state_space(car(), inputs="wind"), "Unknown input 'wind'"),
-    "assembling free values": (lambda: state_space(open_car()), "c, b is still free"),
+    "assembling free values": (lambda: state_space(open_car()), "still has free values: c, b"),
     # values
     "fixing what is not free": (lambda: open_car().with_values({"d": 1.0}), "unknown free value 'd'"),
     "fixing to nothing": (lambda: open_car().with_values({"c": 0.0}), "must be positive"),

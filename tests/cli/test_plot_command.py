@@ -150,3 +150,14 @@ def test_help_names_all_kinds(command: str, option: str, kinds: Mapping[str, obj
     (argument,) = (one for one in app[command].assemble_argument_collection() if option in one.names)
     files = [key for key, kind in kinds.items() if getattr(kind, "is_file", True)]
     assert re.findall(rf"\b({'|'.join(files)})\b", argument.parameter.help) == files
+
+
+def test_a_folder_with_the_name_of_a_plot_is_refused_before_any_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "a.svg").mkdir()
+    asked = ["plot", str(EXAMPLES / "quarter-car.toml"), "--kind", "poles", "--index", "J1"]
+    assert call([*asked, "-o", str(tmp_path / "a.svg"), "--force"]) == 2
+    assert "a.svg: this is a folder. Give the name of a file in it with -o." in capsys.readouterr().err
+    assert call([*asked, "-o", str(tmp_path / "none" / "a.svg")]) == 2
+    assert "none: folder not found. Create it, or choose another with -o." in capsys.readouterr().err

@@ -9,7 +9,6 @@ from typing import Any
 from inerter.cli.interrupts import interruptible
 from inerter.cli.quantity_options import positive_option
 from inerter.cli.streams import say
-from inerter.errors import StudyError
 from inerter.exports.export import check_suffix, export_contents
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import ExportSpec
@@ -35,10 +34,6 @@ def export(
     kind, part = EXPORTS[to], options["part"]
     if output is not None:
         check_suffix(kind, output)
-        if output.is_dir():
-            raise StudyError(f"{output}: is a folder; give the name of a file, such as -o {output / 'design'}.")
-        if not output.parent.is_dir():
-            raise StudyError(f"{output.parent}: folder not found. Create it, or choose another with -o.")
         check_single(output, by=_BY, inputs=(), force=force)
     else:
         check_suffix(kind, f"design{kind.suffixes[0]}" if kind.is_file else "design")

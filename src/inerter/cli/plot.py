@@ -62,8 +62,6 @@ def plot(source: Path, kind: str, options: PlotOptions, output: Path | None, *, 
     path = output or Path(f"{stem}-{kind}.svg")
     if path.suffix.lower() not in _SUFFIXES:
         raise StudyError(f"{path}: a plot is a file with the suffix {some(list(_SUFFIXES))}.")
-    if not path.parent.is_dir():
-        raise StudyError(f"{path.parent}: folder not found. Create it, or choose another with -o.")
     check_single(path, by=_BY, inputs=(), force=force)
     load = {PlotSource.DESIGNS: _designs, PlotSource.MOTION: _motion, PlotSource.RESULTS: _results}[row.of]
     with interruptible():

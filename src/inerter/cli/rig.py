@@ -19,21 +19,12 @@ def rig(config: Path, output: Path, *, force: bool) -> None:
     """Run the virtual rig of a file, and write what its sensors read."""
     request = load_rig(config)
     inputs = (config, *request.signal.inputs)
-    _check_output(output)
     check_single(output, by=KIND.command, inputs=inputs, force=force)
+    if output.suffix.lower() not in WRITERS:
+        raise StudyError(f"{output}: records are written to {', '.join(WRITERS)}. Name a file with such a suffix.")
     with interruptible():
         record = record_of(config, request)
         with single(output, by=KIND.command, inputs=inputs, force=force) as draft:
             write_record(record, draft)
     print(rig_text(request, record))
     say(f"record: {output}")
-
-
-def _check_output(output: Path) -> None:
-    """Before any work, whether a record can be written there; raises `StudyError` otherwise."""
-    if output.is_dir():
-        raise StudyError(f"{output}: is a folder; give the name of a file, such as -o {output / 'bench.csv'}.")
-    if output.suffix.lower() not in WRITERS:
-        raise StudyError(f"{output}: records are written to {', '.join(WRITERS)}. Name a file with such a suffix.")
-    if not output.parent.is_dir():
-        raise StudyError(f"{output.parent}: folder not found. Create it, or choose another with -o.")

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.errors import DesignError, ExportError, LinearSystemError
+from inerter.errors import ExportError, LinearSystemError
 from inerter.exports.refusals import delay_notes, refuse_nonlinear
 from inerter.norms.response import frequency_response
 from inerter.systems.assemble import state_space
@@ -22,7 +22,7 @@ from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import input_unit, velocity_of
 from inerter.systems.unknowns import state_units, unknowns
 from inerter.vehicle.mechanism import Mechanism
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
 if TYPE_CHECKING:
     import scipy.signal
@@ -145,7 +145,7 @@ def named_system(
         return _of_system(of.subsystem(inputs, outputs), form, title)
     check_vehicle(of)
     mechanism = of.mechanism()
-    refuse_free(mechanism)
+    check_fixed(mechanism)
     if not linear:
         refuse_nonlinear(mechanism)
     columns = None if inputs is None else check_names("inputs", inputs)
@@ -154,12 +154,6 @@ def named_system(
     made = _state_space(mechanism, descriptor, columns, rows) if form == FORMS[0] else _descriptor(descriptor)
     notes = [f"{note}." for note in linear_graph(mechanism).notes] + delay_notes(mechanism, descriptor.inputs)
     return replace(made, notes=tuple(notes), title=title or "linear model")
-
-
-def refuse_free(mechanism: Mechanism) -> None:
-    """Raise `DesignError` if a value is free."""
-    if free := ", ".join(mechanism.free_values()):
-        raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
 
 
 def has_massless_nodes(mechanism: Mechanism) -> bool:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError
-from inerter.exports.named_system import FORMS, NamedSystem, has_massless_nodes, named_system, refuse_free
+from inerter.exports.named_system import FORMS, NamedSystem, has_massless_nodes, named_system
 from inerter.exports.refusals import refuse_moving_ground, refuse_nonlinear, refuse_notes
 from inerter.indices.definition import Index
 from inerter.networks.elements import Network
@@ -20,7 +20,7 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.systems.linear import LinearSystem
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism, Strut
-from inerter.vehicle.vehicle import Vehicle
+from inerter.vehicle.vehicle import Vehicle, check_fixed
 
 Exportable = Vehicle | Network | LinearSystem | Trajectory
 
@@ -74,7 +74,7 @@ class ExportSpec:
     def mechanism(self) -> Mechanism:
         """The mechanism of the vehicle, without free values; raises `ExportError` if it is none."""
         mechanism = self._vehicle("a vehicle").mechanism()
-        refuse_free(mechanism)
+        check_fixed(mechanism)
         return mechanism
 
     def linear_mechanism(self, program: str) -> Mechanism:

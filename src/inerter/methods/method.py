@@ -32,7 +32,7 @@ from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
 from inerter.vehicle.mechanism import Mechanism, check_known
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 from inerter.work.pool import Pool
 from inerter.work.running import map_items, running_on
 
@@ -209,11 +209,7 @@ def evaluate(vehicle: Vehicle, index: IndexLike, method: Method, *, executor: Ex
     2.9882
     """
     check_request(vehicle, index, method)
-    free = ", ".join(vehicle.free_values())
-    if free:
-        raise DesignError(
-            f"The design still has free values: {free}. Fix them with with_values(...), or use optimise(...)."
-        )
+    check_fixed(vehicle)
     with running_on(executor) as pool:
         if executor is not None:
             _prepare(pool, vehicle, [index], method)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from inerter.errors import DesignError, LinearSystemError
+from inerter.errors import LinearSystemError
 from inerter.systems.descriptor import close, describe
 from inerter.systems.linear import LinearSystem, check_names
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
 
 def state_space(
@@ -32,9 +32,7 @@ def state_space(
     """
     check_vehicle(vehicle)
     mechanism = vehicle.mechanism()
-    free = ", ".join(mechanism.free_values())
-    if free:
-        raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+    check_fixed(mechanism)
     inputs = None if inputs is None else check_names("inputs", inputs)
     outputs = None if outputs is None else check_names("outputs", outputs)
     descriptor = describe(mechanism, inputs, outputs)

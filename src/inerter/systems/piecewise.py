@@ -28,7 +28,7 @@ from inerter.systems.outputs import Output
 from inerter.systems.structure import structure_of
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism, check_values
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
 Matrix = NDArray[np.float64]
 _KEPT, _KEPT_SYSTEMS = 128, 16  # rows of outputs, and systems
@@ -104,9 +104,7 @@ def piecewise(vehicle: Vehicle) -> PiecewiseSystem:
     """
     check_vehicle(vehicle)
     mechanism = vehicle.mechanism()
-    free = ", ".join(mechanism.free_values())
-    if free:
-        raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+    check_fixed(mechanism)
     structure = structure_of(mechanism)
     if structure is None:
         return _assemble(mechanism)

@@ -39,6 +39,14 @@ def check_vehicle(vehicle: object) -> None:
         raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {vehicle!r}.")
 
 
+def check_fixed(design: Vehicle | Mechanism) -> None:
+    """Raise `DesignError` if a value is free."""
+    if free := ", ".join(design.free_values()):
+        raise DesignError(
+            f"The design still has free values: {free}. Fix them with with_values(...), or use optimise(...)."
+        )
+
+
 @dataclass(frozen=True)
 class VehicleModel:
     """Base of a vehicle model of files with a `key`: quantities and mounted networks.

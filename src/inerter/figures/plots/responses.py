@@ -21,7 +21,7 @@ from inerter.systems.descriptor import close
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import input_unit, unit_of
 from inerter.vehicle.mechanism import Mechanism
-from inerter.vehicle.vehicle import Vehicle, check_vehicle
+from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
 Array = NDArray[np.float64]
 Designs = Vehicle | Mapping[str, Vehicle]
@@ -59,8 +59,7 @@ def _system(
 ) -> tuple[LinearSystem, int | None, dict[str, float], str, str]:
     """System of a response, order of its Pade approximants, weight of each output, and the gain in words and unit."""
     if not isinstance(response, tuple):
-        if free := ", ".join(mechanism.free_values()):
-            raise DesignError(f"The value of {free} is still free. Fix it with with_values(...), or optimise first.")
+        check_fixed(mechanism)
         problem = linear_problem(mechanism, response.definition(mechanism), CONVENTIONS["exact"])
         system = problem.system(close(problem.descriptor, {}))
         definition = problem.definition

@@ -157,7 +157,11 @@ def single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> Ite
 
 
 def check_single(path: Path, *, by: str, inputs: tuple[Path, ...], force: bool) -> None:
-    """Raises `StudyError` unless there is no file at `path`, or one of our own that `force` may replace."""
+    """Raises `StudyError` unless a file can be at `path`: where none is, or one of our own that `force` may replace."""
+    if path.is_dir():
+        raise StudyError(f"{path}: this is a folder. Give the name of a file in it with -o.")
+    if not path.parent.is_dir():
+        raise StudyError(f"{path.parent}: folder not found. Create it, or choose another with -o.")
     if not _is_mark(path.parent):
         raise StudyError(f"{path.parent / MARK}: is in the way. Move it away, or choose another folder with -o.")
     if not os.path.lexists(path):

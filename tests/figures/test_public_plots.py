@@ -127,6 +127,14 @@ def test_step_response_is_that_of_scipy() -> None:
     assert force[-1] == pytest.approx(1.0 / K + 1.0 / TYRE, rel=1e-6)
 
 
+def test_the_label_of_a_step_response_fits_and_has_no_raw_power() -> None:
+    ax = it.plot_step_response(CAR, ("road", "sprung_acceleration"))
+    ax.figure.draw_without_rendering()
+    assert ax.get_ylabel().endswith("[(m/s²)/m]")
+    box = ax.yaxis.label.get_window_extent()
+    assert 0.0 <= box.y0 < box.y1 <= ax.figure.bbox.height
+
+
 def test_an_impulse_is_refused() -> None:
     """A damper in a tyre gives its load an impulse where the road steps."""
     mass = it.Mechanism(

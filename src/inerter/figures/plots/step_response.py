@@ -11,6 +11,7 @@ from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_curve_legend, curve_looks, single_axes
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import style_context
+from inerter.files.study.responses import gain_unit
 from inerter.formatting import capital, in_words
 from inerter.systems.assemble import state_space
 from inerter.systems.linear import LinearSystem
@@ -32,8 +33,8 @@ def plot_step_response(
 
     >>> import inerter as it
     >>> car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(60e3) | it.Damper(2e3))
-    >>> it.plot_step_response(car, ("road", "sprung_displacement")).get_ylabel()
-    'Sprung displacement [m per m of road]'
+    >>> it.plot_step_response(car, ("road", "sprung_displacement")).get_xlabel()
+    'Time [s]'
     """
     time = np.linspace(0.0, duration, _STEPS)
     with style_context():
@@ -46,7 +47,8 @@ def plot_step_response(
             roads = response[0] in {road.name for road in mechanism.roads}
             ax.plot(time, _impulse(system, time) if roads else _step(system, time), **look)
             what, per = unit_of(mechanism, [response[1]]), "m" if roads else input_unit(mechanism, response[0])
-            label = f"{capital(in_words(response[1]))} [{what} per {per} of {in_words(response[0])}]"
+            words = f"{capital(in_words(response[1]))} over step of {in_words(response[0])}"
+            label = axis_label(words, gain_unit(what, per))
         ax.set(xlabel=axis_label("Time", "s"), ylabel=label)
         ax.margins(x=0.0)
         add_curve_legend(ax, len(named), given)

@@ -1,4 +1,5 @@
-"""How long the page takes: from the command to the page, from the step of a slider to its numbers, frames of the car.
+"""How long the page takes: from the command to the page, from the step of a slider to its numbers, frames of the car;
+and its memory over a thousand steps.
 
     python benchmarks/page_latency.py [STEPS]
 
@@ -37,6 +38,7 @@ STEP = """async ([position, panels]) => {
   slider.dispatchEvent(new Event("input", { bubbles: true }));
   return Math.max(...(await all)) - begun;
 }"""
+KEPT = 10  # at least the number of answers that a panel keeps, so that undoing finds them again
 FRAMES = """async (seconds) => {
   const canvas = document.querySelector(".vehicle canvas");
   const before = Number(canvas.dataset.frames);
@@ -96,6 +98,28 @@ def _measure(page: Any, link: str, steps: int) -> None:
     page.wait_for_selector(".vehicle[data-being=current] canvas")
     page.wait_for_timeout(500)
     print(f"frames of the car in motion      {page.evaluate(FRAMES, 3):8.1f} a second")
+    _measure_memory(page)
+
+
+def _measure_memory(page: Any) -> None:
+    """Heap and nodes after further steps, once the answers that each panel keeps are as many as it ever keeps."""
+    session = page.context.new_cdp_session(page)
+    session.send("Performance.enable")
+    session.send("HeapProfiler.enable")
+    for i in range(KEPT):
+        page.evaluate(STEP, [40 + i, ["decision"]])
+        page.wait_for_selector(".vehicle[data-being=current]")
+        page.wait_for_timeout(1000)
+    begun = 0
+    for steps in (0, 100, 300, 1000):
+        for i in range(begun, steps):
+            page.evaluate(STEP, [40 + (37 * i) % 320, ["decision"]])
+        begun = steps
+        page.wait_for_timeout(1500)
+        session.send("HeapProfiler.collectGarbage")
+        found = {one["name"]: one["value"] for one in session.send("Performance.getMetrics")["metrics"]}
+        size, nodes = found["JSHeapUsedSize"] / 1e6, found["Nodes"]
+        print(f"memory after {steps:4} further steps {size:8.2f} MB, {nodes:.0f} nodes")
 
 
 if __name__ == "__main__":

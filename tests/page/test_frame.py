@@ -46,7 +46,8 @@ def test_the_verdict_is_that_of_the_server_with_all_its_caveats(visitor: Visitor
             page.keyboard.press("Escape")
         told = found.value.json()
         page.wait_for_function(
-            "text => document.querySelector('#verdict > b').textContent === text", arg=told["verdict"]["sentence"]
+            "text => document.querySelector('#verdict > b').textContent === text",
+            arg=f"At values not re-optimised: {told['verdict']['sentence']}",
         )
         sentences = [each["sentence"] for each in told["verdict"]["caveats"]]
         assert page.locator("#verdict .caveat").evaluate_all("all => all.map(each => each.textContent)") == sentences
@@ -324,3 +325,27 @@ def test_the_layout_opens_of_which_the_verdict_speaks(
     page.route("**/api/panel/optimise", late, times=1)
     assert opened() == "S2"
     assert not is_best()
+
+
+PALE = """() => [...document.querySelectorAll(".answers tbody td")]
+  .filter(each => getComputedStyle(each).opacity !== "1").map(each => each.parentElement.className)"""
+
+
+def test_a_verdict_at_former_optima_is_doubtful_until_they_are_found_anew(visitor: Visitor) -> None:
+    """With a heavy inerter that is no design variable another strut is the best; no current number stays pale then."""
+    page = visitor.page
+    sentence = page.locator("#verdict > b")
+    page.locator("[data-place='elements.b'] input[type=checkbox]").uncheck()
+    for mass, inertance in (("90 kg", "20 kg"), ("120 kg", "100 kg"), ("150 kg", "20 kg")):
+        for place, text in (("vehicle.sprung_mass", mass), ("elements.b", inertance)):
+            page.fill(f"[id='entry {place}']", text)
+            page.keyboard.press("Enter")
+        page.wait_for_selector("#verdict[data-severity=doubt]")
+        visitor.settled()
+        assert sentence.inner_text().startswith("At values not re-optimised: ")
+        page.locator("#verdict .stale").click()
+        page.wait_for_selector("#verdict[data-severity=answer]")
+        visitor.settled()
+        assert not sentence.inner_text().startswith("At values")
+        page.wait_for_timeout(200)
+        assert page.evaluate(PALE) == []

@@ -48,7 +48,8 @@ function rowsOf(state, value) {
     is_baseline: design.layout === baselineOf(document).layout, others }))];
 }
 
-/** @param {{store: Store, answer: import("../state/answers.js").Shown}} props */
+/** In another order they are drawn anew: Chromium keeps the former style of a row that is moved and changed at once.
+ * @param {{store: Store, answer: import("../state/answers.js").Shown}} props */
 function Ranking({ store, answer: { is, value, before } }) {
   const state = store.get();
   const document = state.history.present;
@@ -79,7 +80,8 @@ function Ranking({ store, answer: { is, value, before } }) {
       <th scope="col">against ${baseline}</th>
       ${others.map((/** @type {any} */ { index, title }, /** @type {number} */ i) => html`<th scope="col" key=${index}
         title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
-    <tbody>${rows.map((row) => html`<${Row} key=${row.layout} store=${store} row=${row} units=${units}
+    <tbody key=${rows.map(({ layout }) => layout).join()}>${rows.map((row) => html`<${Row} key=${row.layout}
+      store=${store} row=${row} units=${units}
       sketched=${sketches[row.layout] ?? []}
       stale=${!isRight(row.layout)} compared=${isRight(baseline)}
       missing=${is === "coming" ? "…" : "–"} />`)}</tbody></table></div>`;

@@ -100,8 +100,11 @@ function Verdict({ state, blank }) {
     : "Not computed: the study has no index.";
   const unsearched = searched.length > 0 && value?.rows.length < 2; // nothing is wrong with what stands alone
   const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : unsearched ? none : "";
-  const kind = is === "coming" || failed === none ? "wait" : failed ? "none" : (verdict?.severity ?? "answer");
-  const told = failed || verdict?.sentence || "Under way";
+  const isStale = !failed && verdict?.severity === "answer" && staleLayouts(state).length > 0;
+  const kind = is === "coming" || failed === none ? "wait" : failed ? "none" : isStale ? "doubt"
+    : (verdict?.severity ?? "answer");
+  const told = failed
+    || (verdict ? `${isStale ? "At values not re-optimised: " : ""}${verdict.sentence}` : "Under way");
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
     data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>
     <div class="row"><${ToOptimise} state=${state} />

@@ -160,6 +160,9 @@ BAD = {
     "a decimal comma among points": (changed(30, '0.06,0.001,"2,5"\n'), {}, 'line 32: .* decimal point, got "2,5"'),
     "decimal commas between commas": (
         text(HEADER + "".join(f"0,{i:03d},0,5,1,25\n" for i in range(9))), {}, "requires a delimiter other than"),
+    "decimal commas between commas, and a whole number in the first row": (
+        text(HEADER + "0,0,5,1,25\n" + "".join(f"0,{i:03d},0,5,1,25\n" for i in range(1, 9))), {},
+        "line 2: the row has 5 columns, the rows below have 6. A decimal comma requires a delimiter other than"),
     "complex numbers": (lambda folder: write_mat(folder / "a.mat", time=T, x=X, F=F * 1j), {"units": {
         "time": "s", "displacement": "m", "force": "N"}}, "'F' contains complex numbers"),
     "a matrix": (lambda folder: write_mat(folder / "a.mat", time=T, x=X, F=np.c_[F, F]), {}, r"F\[0\] \(no unit\)"),

@@ -203,7 +203,7 @@ def _header(source: str, above: list[str], delimiter: str | None, columns: int) 
         text = line.lstrip(" \t#%") if comment else line
         cells = _split_spaced(text) if delimiter is None else _cells(text, delimiter)
         if len(cells) != columns:
-            _check_counts(source, len(above) - count + 1, cells, columns, comment)
+            _check_counts(source, len(above) - count + 1, cells, columns, comment, delimiter)
             return rows, count - 1
         if not comment and sum(map(_is_number, cells)) > columns / 2:
             raise _bad_cell(source, len(above) - count + 1, cells)
@@ -213,12 +213,16 @@ def _header(source: str, above: list[str], delimiter: str | None, columns: int) 
     return rows, len(above)
 
 
-def _check_counts(source: str, line: int, cells: list[str], columns: int, comment: bool) -> None:
+def _check_counts(source: str, line: int, cells: list[str], columns: int, comment: bool, delimiter: str | None) -> None:
     headings = [cell for cell in cells if _HEADING.fullmatch(cell)]
-    if not comment and len(headings) >= 2:
-        half = " A decimal comma requires a delimiter other than a comma." if columns == 2 * len(cells) else ""
+    numbers = delimiter == "," and len(cells) >= 2 and all(map(_is_number, cells))
+    if not comment and (len(headings) >= 2 or numbers):
+        what = "row" if numbers else "header"
+        half = (
+            " A decimal comma requires a delimiter other than a comma." if numbers or columns == 2 * len(cells) else ""
+        )
         raise RecordError(
-            f"{source}, line {line}: the header has {len(cells)} columns, the rows below have {columns}.{half}"
+            f"{source}, line {line}: the {what} has {len(cells)} columns, the rows below have {columns}.{half}"
         )
 
 

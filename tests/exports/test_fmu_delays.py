@@ -139,3 +139,5 @@ def test_an_input_that_is_held_arrives_as_it_was(masters: list[Master], tmp_path
 def test_what_has_no_speed() -> None:
     with pytest.raises(it.InerterError, match=r"speed must be a positive number of m/s, got -1"):
         it.export(half_car(), "fmu", speed=-1.0)
+    with pytest.raises(it.InerterError, match=r"speed is 1e-30 m/s; an FMU supports 1e-12 to 1e\+15 m/s"):
+        it.export(half_car(), "fmu", speed=1e-30)

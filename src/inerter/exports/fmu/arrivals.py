@@ -8,19 +8,21 @@ from inerter.errors import ExportError
 from inerter.exports.fmu.equations import FmuParameter
 from inerter.exports.fmu.switching import SwitchingSystem
 from inerter.exports.refusals import delay_notes
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, format_range
 from inerter.systems.outputs import velocity_of
 from inerter.validation import is_number
-from inerter.vehicle.mechanism import Mechanism, RoadInput
+from inerter.vehicle.mechanism import LARGEST, SMALLEST, Mechanism, RoadInput
 
 
 def on_one_road(system: SwitchingSystem, mechanism: Mechanism, speed: float) -> SwitchingSystem:
     """The system whose roads on one side are the foremost of them, and reach the others distance / speed later.
 
-    Raises `ExportError` for a speed that is no positive number.
+    Raises `ExportError` for a speed that is no positive number, or one that a host could not set.
     """
     if not is_number(speed) or speed <= 0.0:
         raise ExportError(f"The speed must be a positive number of m/s, got {speed!r}.")
+    if not SMALLEST <= speed <= LARGEST:
+        raise ExportError(f"The speed is {speed!r} m/s; an FMU supports {format_range(SMALLEST, LARGEST, 'm/s')}.")
     names = [one.name for one in system.inputs]
     roads = [road for road in mechanism.roads if velocity_of(road.name) in names]
     first: dict[str, RoadInput] = {}

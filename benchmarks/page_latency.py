@@ -9,6 +9,7 @@ shows an answer to that very question, and the curves are drawn from theirs.
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import socket
@@ -38,6 +39,7 @@ STEP = """async ([position, panels]) => {
   slider.dispatchEvent(new Event("input", { bubbles: true }));
   return Math.max(...(await all)) - begun;
 }"""
+DATA = {"object", "array", "string", "concatenated string", "sliced string", "number", "closure", "regexp"}
 KEPT = 10  # at least the number of answers that a panel keeps, so that undoing finds them again
 FRAMES = """async (seconds) => {
   const canvas = document.querySelector(".vehicle canvas");
@@ -102,7 +104,10 @@ def _measure(page: Any, link: str, steps: int) -> None:
 
 
 def _measure_memory(page: Any) -> None:
-    """Heap and nodes after further steps, once the answers that each panel keeps are as many as it ever keeps."""
+    """Heap and nodes after further steps, once the answers that each panel keeps are as many as it ever keeps.
+
+    Of the heap also what the page itself holds, without the code that the browser compiles and what it records.
+    """
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable")
     session.send("HeapProfiler.enable")
@@ -118,8 +123,25 @@ def _measure_memory(page: Any) -> None:
         page.wait_for_timeout(1500)
         session.send("HeapProfiler.collectGarbage")
         found = {one["name"]: one["value"] for one in session.send("Performance.getMetrics")["metrics"]}
-        size, nodes = found["JSHeapUsedSize"] / 1e6, found["Nodes"]
-        print(f"memory after {steps:4} further steps {size:8.2f} MB, {nodes:.0f} nodes")
+        size, held, nodes = found["JSHeapUsedSize"] / 1e6, _size_of_data(session) / 1e6, found["Nodes"]
+        print(f"memory after {steps:4} further steps {size:8.2f} MB, of which data {held:.2f} MB; {nodes:.0f} nodes")
+
+
+def _size_of_data(session: Any) -> int:
+    """Bytes of the objects, texts and functions of the page, from a snapshot of its heap."""
+    chunks: list[str] = []
+
+    def listener(event: Any) -> None:
+        chunks.append(event["chunk"])
+
+    session.on("HeapProfiler.addHeapSnapshotChunk", listener)
+    session.send("HeapProfiler.takeHeapSnapshot", {"reportProgress": False})
+    session.remove_listener("HeapProfiler.addHeapSnapshotChunk", listener)
+    snapshot = json.loads("".join(chunks))
+    meta, nodes = snapshot["snapshot"]["meta"], snapshot["nodes"]
+    width, kinds = len(meta["node_fields"]), meta["node_types"][0]
+    kind, size = (meta["node_fields"].index(name) for name in ("type", "self_size"))
+    return sum(nodes[i + size] for i in range(0, len(nodes), width) if kinds[nodes[i + kind]] in DATA)
 
 
 if __name__ == "__main__":

@@ -370,6 +370,18 @@ def test_results_of_a_simulation_are_dropped(visitor: Visitor, tmp_path: Path) -
     assert page.locator(".problem").count() == 0
 
 
+def test_a_simulation_without_a_road_gets_one(visitor: Visitor) -> None:
+    """What is missing is added by a button beside the message that says so."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "stick_slip.toml")
+    page.wait_for_selector(".problems:has-text('road')")
+    page.get_by_role("button", name="Add a road").click()
+    page.wait_for_selector(".problems", state="detached")
+    visitor.settled()
+    assert visitor.values()["J1"] > 0.0
+    page.wait_for_selector("[id='entry road.speed']")
+
+
 BEGIN = """() => {
   document.activeElement.blur();
   for (const each of document.querySelectorAll("[data-walked]")) delete each.dataset.walked;

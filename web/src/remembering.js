@@ -181,7 +181,11 @@ async function openSimulation(store, api, name, { signal, simulation, ...study }
   if (model?.moved === RIG) return store.say(`${name}: ${await takeDevice(store, api, study)}`);
   if (!(await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } }))) return;
   if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
-  store.say(`${name} is open as a study of its vehicle; the excitation of the simulation is omitted.`);
+  const examples = about.road.map((/** @type {any} */ { key, example }) => [key, example]);
+  const offer = study.road ? undefined : { label: "Add a road", act: () =>
+    store.change({ type: "placed", place: ["road"], value: Object.fromEntries(examples) }) };
+  const told = `${name} is open as a study of its vehicle; the excitation of the simulation is omitted.`;
+  store.say(told, undefined, offer);
 }
 
 /** What was identified joins the study that is open. @param {Store} store @param {Api} api @param {File} file */

@@ -77,6 +77,9 @@ def test_networks_of_a_search_are_taken_into_the_editor(served: Served, searchin
     assert max(sum(text.endswith("kg") for text in row["elements"].values()) for row in networks) == 1
     job_row = page.locator(".job[data-state=done]", has_text="Search").first
     job_row.locator("circle.point").first.wait_for(state="attached")
+    assert any("is only" in sentence and "% worse" in sentence for sentence in found["sentences"])
+    for sentence in found["sentences"]:
+        job_row.locator("p", has_text=sentence).wait_for()
     front = max(found["front"]["fronts"], key=lambda one: one["elements"])["points"]
 
     def shows(row: Any, values: dict[str, float]) -> None:

@@ -19,7 +19,7 @@ from inerter.files.study.search_parts import GroupResult, NetworkFrontPart, Real
 from inerter.files.study.search_tables import RANKED, improvement, real_gains
 from inerter.files.study.searching import LayoutSearch, StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
-from inerter.formatting import format_list
+from inerter.formatting import format_list, typeset
 from inerter.methods.registry import brief_words_of
 from inerter.network_search.front_results import FrontNetwork
 from inerter.network_search.network_optimum import SearchedNetwork
@@ -29,7 +29,7 @@ from inerter.networks.elements import ELEMENT_TYPES, Element, Inerter, Network
 from inerter.networks.enumeration import Topology
 from inerter.networks.parser import format_expression, replace_in_expression
 from inerter.networks.transform import map_elements
-from inerter.report.search import write_search_report
+from inerter.report.search import search_sentences, write_search_report
 
 
 def search(body: Body, folder: Path, tell: Tell) -> Any:
@@ -145,7 +145,8 @@ class _Ranking:
             frontier = [self._of_network(one, network) for network in one.result.frontier]
             real = [self._of_real(one, each) for each in one.real if each.network]
             searches.append(self._of_index(one.index, ranking, frontier, real, one.baseline))
-        return self._answer(searches, self._front(found), complete=True)
+        sentences = [typeset(sentence) for sentence in search_sentences(found)]
+        return {**self._answer(searches, self._front(found), complete=True), "sentences": sentences}
 
     def _answer(
         self, searches: list[dict[str, Any]], front: dict[str, Any] | None = None, *, complete: bool

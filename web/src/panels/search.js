@@ -119,7 +119,10 @@ export function SearchResult({ store, api, job }) {
   const one = searches.find(({ index }) => index === view);
   /** @param {Row} row */
   const take = (row) => store.say(takeNetwork(store, found, row), "taken");
-  return html`${views.length > 1 && html`<${IndexChips} indices=${views} picked=${view} pick=${setView} />`}
+  /** @type {string[]} */
+  const sentences = found.sentences ?? [];
+  return html`${sentences.map((sentence) => html`<p key=${sentence}>${sentence}</p>`)}
+    ${views.length > 1 && html`<${IndexChips} indices=${views} picked=${view} pick=${setView} />`}
     ${one ? html`<${Ranking} key=${view} state=${state} found=${found} one=${one} take=${take} />`
       : html`<${NetworkFront} about=${state.about} found=${found} take=${take} />`}
     ${job.result && html`<${Files} store=${store} api=${api} job=${job} />`}`;

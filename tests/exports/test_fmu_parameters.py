@@ -212,3 +212,16 @@ def test_a_step_of_days_with_friction_is_refused(kind: str, masters: list[Master
     with pytest.raises(Exception, match="failed with status"):
         master.step(1e5)
     assert master.messages == ["a step with friction or gaps is at most 20000 s long"]
+
+
+@pytest.mark.parametrize("kind", sampled(KINDS, ["fmu"]))
+def test_a_step_of_a_rounding_error_hardly_moves_anything(kind: str, masters: list[Master], tmp_path: Path) -> None:
+    """As of a host that adds up its steps, and ends where it was asked to."""
+    shown = ("sprung_displacement", "sprung_velocity", "strut_force")
+    for step in (1e-13, 1e-14, 1e-17, 1e-150):
+        master = opened(masters, paper_quarter_car(REAL), tmp_path, kind)
+        master.set("sprung_force", 100.0)
+        master.step(0.1)
+        before, master.time = master.get(*shown), 0.0
+        master.step(step)
+        assert master.get(*shown) == pytest.approx(before, rel=1e-9)

@@ -480,7 +480,7 @@ static int advance(Model *model, double step)
     while (time < end) {
         const double until = next_break(model, time, end);
         const double piece = time == begin && until == end ? step : shortened(until - time);
-        const int parts = NR > 0 ? (int)ceil(piece / LONGEST - 1e-9) : 1;
+        const int parts = NR > 0 && piece > LONGEST ? (int)ceil(piece / LONGEST - 1e-9) : 1;
         const Flows *flows = flows_of(model, piece / parts);
         if (flows == NULL) return 0;
         load(model, time, until);

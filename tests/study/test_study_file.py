@@ -439,7 +439,7 @@ BAD = {
     "reversed": ([(C, 'c = { from = "2 N s/m", to = "1 N s/m" }')], "elements.c", ["reversed", '"2 N s/m"', "less"]),
     "equal": ([(C, 'c = { from = "2 N s/m", to = "2 N s/m" }')], "elements.c", ["equal", "single value"]),
     "unlike": ([(C, 'c = { from = "2 N s/m", to = "9 N/m" }')], "elements.c", ["unlike units", "N s/m", "N/m"]),
-    "no upper": ([(C, 'c = { from = "2 N s/m" }')], "elements.c.to", ["missing", 'to = "100 kN s/m"']),
+    "no upper": ([(C, 'c = { from = "2 N s/m" }')], "elements.c.to", ["missing", 'to = "2 kN s/m"']),
     "zero lower": ([(C, 'c = { from = "0 N s/m", to = "1 N s/m" }')], "elements.c.from", ["not positive"]),
     "lower word": ([(C, 'c = { frm = "1 kg", to = "2 kg" }')], "elements.c.frm", ["unknown key", '"from"']),
     "list": ([(C, 'c = ["1 N s/m", "2 N s/m"]')], "elements.c", ["a list"]),

@@ -80,6 +80,7 @@ def test_what_is_pressed_is_about_the_newest_however_late_the_screen_is(visitor:
 
 def test_what_is_wrong_is_told_at_its_place_and_nothing_is_lost(visitor: Any, tmp_path: Path) -> None:
     page = visitor.page
+    visitor.pick("S3e")
     before = visitor.text
     page.fill("#network-text", "k | c - (ks |")
     page.wait_for_selector("#network-problem")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+import numpy as np
+
 from inerter.identification.conclusions import _comparisons
 from inerter.identification.diagnosis import explanations
 from inerter.identification.experiment import experiment_of
@@ -43,7 +45,20 @@ def quick_fit(
     optimum = best_fit_of(problem, optimum.point, evaluations=40)
     misfit = judge.misfit(problem, optimum.point)
     return SolvedFit(
-        problem, optimum, (), checked, (lead,), (), (), 1.0, judge, misfit, FitOptions(), Adhesion({}), None
+        problem,
+        optimum,
+        (),
+        checked,
+        (lead,),
+        (),
+        (),
+        1.0,
+        judge,
+        misfit,
+        FitOptions(),
+        Adhesion({}),
+        None,
+        np.zeros(optimum.point.size, dtype=bool),
     )
 
 

@@ -120,7 +120,7 @@ def write_netcdf(path: Path, data: xarray.Dataset) -> None:
         draft.write_bytes(content)
 
 
-def netcdf_content(data: xarray.Dataset) -> memoryview:
+def netcdf_content(data: xarray.Dataset) -> bytes:
     """Content of the netCDF file of a dataset."""
     import h5netcdf  # noqa: PLC0415 - heavy
     from xarray.backends import H5NetCDFStore  # noqa: PLC0415 - heavy
@@ -128,7 +128,7 @@ def netcdf_content(data: xarray.Dataset) -> memoryview:
     content = io.BytesIO()
     with h5netcdf.File(content, "w") as file:
         data.dump_to_store(H5NetCDFStore(file))
-    return content.getbuffer()
+    return content.getvalue()
 
 
 @contextmanager

@@ -116,8 +116,8 @@ def _columns(found: ExportedResponses) -> Iterator[tuple[str, Matrix]]:
 
 def _make_netcdf(request: ExportSpec, suffix: str) -> bytes:
     if isinstance(request.of, Trajectory):
-        return bytes(netcdf_content(request.of.to_xarray(_outputs_of(request))))
-    return bytes(netcdf_content(responses_dataset(responses_of(request))))
+        return netcdf_content(request.of.to_xarray(_outputs_of(request)))
+    return netcdf_content(responses_dataset(responses_of(request)))
 
 
 def responses_dataset(found: ExportedResponses) -> xarray.Dataset:

@@ -128,8 +128,7 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
     assert load(CAR) == SimulationRequest(
         title="motion",
         path=tmp_path / "motion.toml",
-        model="quarter-car",
-        vehicle={"sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
+        vehicle={"model": "quarter-car", "sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
         road={"speed": 25.0, "roughness": 5e-7, "coherence": None},
         elements={"k": Spring(60e3, "k"), "c": Damper(3e3, "c"), "b": Inerter(300.0, "b"), "f": Friction(10.0, "f")},
         layouts={"S1": StrutLayout({"strut": "k | c"}), "S2": StrutLayout({"strut": "k | c | (b | f)"})},

@@ -107,8 +107,7 @@ def test_every_value_arrives_in_si_units_and_every_default_is_filled_in(load, tm
     assert load(GOOD) == Study(
         title="A quarter car",
         path=tmp_path / "study.toml",
-        model="quarter-car",
-        vehicle={"sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
+        vehicle={"model": "quarter-car", "sprung_mass": 181.75, "unsprung_mass": 25.0, "tyre_stiffness": 120e3},
         road=ROAD,
         elements={
             "k": Spring(60e3, "k"),
@@ -314,8 +313,7 @@ def test_any_values_survive_to_the_last_bit(tmp_path_factory, numbers, seed):
     study = Study(
         title="t",
         path=Path("t.toml"),
-        model="quarter-car",
-        vehicle={"sprung_mass": mass, "unsprung_mass": wheel, "tyre_stiffness": tyre},
+        vehicle={"model": "quarter-car", "sprung_mass": mass, "unsprung_mass": wheel, "tyre_stiffness": tyre},
         road=Road(roughness=k, speed=speed),
         elements={"k": Spring(k, "k"), "c": Damper(Free(low, 2 * low, "c"), "c"), "b": Inerter(mass, "b")},
         layouts={"S": StrutLayout({"strut": "k | c | b"})},

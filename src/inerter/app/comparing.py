@@ -144,7 +144,7 @@ def _put(study: Study, document: object) -> Study:
     if not document:
         return study
     own = study_from(document)
-    return replace(study, model=own.model, vehicle=own.vehicle, elements=own.elements, layouts=own.layouts)
+    return replace(study, vehicle=own.vehicle, elements=own.elements, layouts=own.layouts)
 
 
 def _numbers(design: Design) -> dict[str, str]:

@@ -106,7 +106,6 @@ def simulation_request(study: Study, design: Design, body: Mapping[str, Any]) ->
     return SimulationRequest(
         title=study.title,
         path=study.path,
-        model=study.model,
         vehicle=study.vehicle,
         road=road_values(study.road, study.coherence),
         elements=design.fixed_study.elements,

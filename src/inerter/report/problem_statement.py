@@ -59,7 +59,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
     """The model, its masses, stiffnesses and lengths, and the road, each with its value."""
     rows = [("Model", study.model.replace("-", " "))]
     swept = {sweep.words for sweep in study.sweeps}
-    told = [row for row in vehicle_words(study.model, study.vehicle) if row[0] not in swept]
+    told = [row for row in vehicle_words(study.vehicle) if row[0] not in swept]
     rows += [(capital(name), unit if value is None else _value_text(study, value, unit)) for name, value, unit in told]
     rows += [(capital(s.words), _number_text(study, s.label)) for s in study.sweeps if s.place.section == "vehicle"]
     if study.road is not None:
@@ -158,7 +158,7 @@ def layout_rows(study: Study) -> list[LayoutText]:
 def index_rows(study: Study, *, combined: bool = False) -> list[tuple[str, str]]:
     """The indices by title, each with what it is; with `combined` only those of several outputs."""
     layout, known = next(iter(study.layouts.values())), dict.fromkeys(study.free_networks, Spring(1.0))
-    mechanism = layout.design(study.model, study.vehicle, study.elements, known).mechanism()  # of any network
+    mechanism = layout.design(study.vehicle, study.elements, known).mechanism()  # of any network
     rows = []
     for name in dict.fromkeys([*study.indices, *study.trade_off]):
         index = study.index(name)

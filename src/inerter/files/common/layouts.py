@@ -25,7 +25,7 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.ties import with_known_values
 from inerter.files.common.vehicle_tables import SEAT
-from inerter.files.common.vehicles import MountEntry, build_vehicle, mounts, parts_of
+from inerter.files.common.vehicles import MountEntry, build_vehicle, mounts
 from inerter.networks.elements import Element, Network
 from inerter.networks.parser import names, network
 from inerter.units import quote_value
@@ -41,14 +41,13 @@ class StrutLayout:
 
     def design(
         self,
-        model: str,
         vehicle: Mapping[str, Any],
         elements: Mapping[str, Element],
         networks: Mapping[str, Network] = MappingProxyType({}),
     ) -> Vehicle:
         """The vehicle with these struts, made of `elements` and `networks`."""
         known = {**with_known_values(elements), **networks}
-        return build_vehicle(model, vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
+        return build_vehicle(vehicle, {mount: network(text, **known) for mount, text in self.struts.items()})
 
 
 @dataclass(frozen=True)
@@ -77,14 +76,13 @@ class LayoutCodec(Codec):
     def _mounts(self, context: LoadContext) -> tuple[str, dict[str, MountEntry]]:
         """The model of the vehicle and its mounts; none where they cannot be known."""
         if self.model:
-            return self.model, mounts(self.model, {})
+            return self.model, mounts({"model": self.model})
         vehicle, raw = context.loaded.get("vehicle", INVALID), context.tables.get("vehicle")
         if vehicle is not INVALID:
-            model, values = parts_of(vehicle)
-            return model, mounts(model, values)
+            return vehicle["model"], mounts(vehicle)
         model = str(raw.get("model")) if isinstance(raw, Mapping) else ""
         seat = {SEAT: MountEntry(needed=False)} if model in VEHICLES and SEAT in (raw or ()) else {}
-        return model, {**mounts(model, {}), **seat} if model in VEHICLES else {}
+        return model, {**mounts({"model": model}), **seat} if model in VEHICLES else {}
 
     def dump(self, value: StrutLayout) -> str | dict[str, str]:
         """The text, or a table for several mounts."""
@@ -103,7 +101,7 @@ class LayoutCodec(Codec):
         each = {}
         for model, kind in VEHICLES.items():
             if len(names := mounts_of(kind)) > 1:
-                each[names] = _mounts_table(mounts(model, {})).schema()
+                each[names] = _mounts_table(mounts({"model": model})).schema()
         own = {"type": "object", "additionalProperties": EXPRESSION.schema()}
         return any_of([*each.values(), EXPRESSION.schema(), own])
 

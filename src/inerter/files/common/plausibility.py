@@ -60,12 +60,13 @@ def road_warnings(road: Road) -> Iterator[str]:
         yield f"Warning: no vehicle drives at {driven}, {side}. Check the unit of the speed."
 
 
-def vehicle_warnings(model: str, values: Mapping[str, Any], elements: Iterable[tuple[str, Element]]) -> Iterator[str]:
+def vehicle_warnings(vehicle: Mapping[str, Any], elements: Iterable[tuple[str, Element]]) -> Iterator[str]:
     """Sentences on implausible numbers of a road vehicle, its seat, and the elements of its struts."""
+    model = vehicle["model"]
     if not is_on_road(model):
         return
-    yield from _beyond_usual(f"{model.replace('-', ' ')}", fields_of(VEHICLES[model]), values)
-    yield from _beyond_usual("seat", fields_of(Seat), values.get(SEAT) or {})
+    yield from _beyond_usual(model.replace("-", " "), fields_of(VEHICLES[model]), vehicle)
+    yield from _beyond_usual("seat", fields_of(Seat), vehicle.get(SEAT) or {})
     for name, element in elements:
         value, bounds = element.value, _ELEMENTS.get(element.linear)
         if isinstance(value, float | int) and bounds is not None:

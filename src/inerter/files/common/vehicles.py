@@ -1,6 +1,6 @@
 """Vehicle of a table [vehicle]: the mounts that layouts fill, the vehicle with its networks, and its problems.
 
-A vehicle in a file is a model and its values: quantities by their keys or, of a mechanism, the tables of its parts; and
+The table has the model and its values: quantities by their keys or, of a mechanism, the tables of its parts; and
 perhaps the table of a seat.
 """
 
@@ -33,7 +33,7 @@ from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.seat import Seat
 from inerter.vehicle.vehicle import Vehicle
 
-Values = Mapping[str, Any]
+VehicleTable = Mapping[str, Any]
 Networks = Mapping[str, Network]
 _ANY: Network = Spring(1.0) | Damper(1.0)  # where it does not matter what is mounted
 
@@ -51,42 +51,41 @@ def models() -> tuple[str, ...]:
     return (*VEHICLES, MECHANISM)
 
 
-def parts_of(vehicle: Mapping[str, Any]) -> tuple[str, dict[str, Any]]:
-    """The model and the values that a table [vehicle] gives."""
-    return str(vehicle["model"]), {name: value for name, value in vehicle.items() if name != "model"}
-
-
-def mounts(model: str, values: Values) -> dict[str, MountEntry]:
+def mounts(table: VehicleTable) -> dict[str, MountEntry]:
     """Mounts that layouts fill, by name; a seat last."""
-    if model == MECHANISM:
-        parts = {**values["struts"], **values["tyres"]}
+    if table["model"] == MECHANISM:
+        parts = {**table["struts"], **table["tyres"]}
         own = {name: MountEntry(part["network"] is None, part["network"]) for name, part in parts.items()}
     else:
-        needed = needed_mounts_of(VEHICLES[model])
-        own = {name: MountEntry(needed=name in needed) for name in mounts_of(VEHICLES[model])}
-    seat = {SEAT: MountEntry(needed=False, network=values[SEAT]["network"])} if SEAT in values else {}
+        kind = VEHICLES[table["model"]]
+        needed = needed_mounts_of(kind)
+        own = {name: MountEntry(needed=name in needed) for name in mounts_of(kind)}
+    seat = {SEAT: MountEntry(needed=False, network=table[SEAT]["network"])} if SEAT in table else {}
     return {**own, **seat}
 
 
-def build_vehicle(model: str, values: Values, networks: Networks) -> Vehicle:
+def build_vehicle(table: VehicleTable, networks: Networks) -> Vehicle:
     """The vehicle with these networks in its mounts."""
-    if SEAT in values:
-        seat = values[SEAT]
-        vehicle = build_vehicle(model, _without_seat(values), {name: n for name, n in networks.items() if name != SEAT})
+    if SEAT in table:
+        seat = table[SEAT]
+        vehicle = build_vehicle(_without_seat(table), {name: n for name, n in networks.items() if name != SEAT})
         place = {} if seat["place"] is None else {"place": _floats(seat["place"])}
         return Seat(vehicle, seat["mass"], networks[SEAT], **place)
-    return _mechanism(values, networks) if model == MECHANISM else VEHICLES[model](**values, **networks)
+    if table["model"] == MECHANISM:
+        return _mechanism(table, networks)
+    values = {name: value for name, value in table.items() if name != "model"}
+    return VEHICLES[table["model"]](**values, **networks)
 
 
-def vehicle_words(model: str, values: Values) -> Iterator[tuple[str, float | None, str]]:
+def vehicle_words(table: VehicleTable) -> Iterator[tuple[str, float | None, str]]:
     """Name, value and unit of each quantity of a vehicle, or name, None and a text, for reports."""
-    yield from _mechanism_words(values) if model == MECHANISM else _words_of(VEHICLES[model], values)
-    if SEAT in values:
-        yield from ((SEAT_MASS, value, unit) for _, value, unit in _words_of(Seat, values[SEAT]))
-        yield "seat mounted at", None, _place(values[SEAT]["place"] or {"sprung": 1.0})
+    yield from _mechanism_words(table) if table["model"] == MECHANISM else _words_of(VEHICLES[table["model"]], table)
+    if SEAT in table:
+        yield from ((SEAT_MASS, value, unit) for _, value, unit in _words_of(Seat, table[SEAT]))
+        yield "seat mounted at", None, _place(table[SEAT]["place"] or {"sprung": 1.0})
 
 
-def _words_of(kind: Any, values: Values) -> Iterator[tuple[str, float | None, str]]:
+def _words_of(kind: Any, values: Mapping[str, Any]) -> Iterator[tuple[str, float | None, str]]:
     """Name, value and unit of each quantity that a dataclass declares and that is not zero."""
     for field in fields_of(kind):
         value = values[field.key]
@@ -101,55 +100,56 @@ def _in_words(name: str, value: float | Free, unit: str) -> tuple[str, float | N
     return name, value, unit
 
 
-def vehicle_problems(model: str, values: Values) -> Iterator[Problem]:
+def vehicle_problems(table: VehicleTable) -> Iterator[Problem]:
     """Problems of a vehicle that do not depend on its networks."""
-    own = mounts(model, _without_seat(values))
-    if SEAT in values and SEAT in own:
+    own = mounts(_without_seat(table))
+    if SEAT in table and SEAT in own:
         yield at(("vehicle", "struts", SEAT), fault="there is a seat in [vehicle.seat] too", expected="another name")
         return
-    problems = list(_mechanism_problems(values)) if model == MECHANISM else []
+    problems = list(_mechanism_problems(table)) if table["model"] == MECHANISM else []
     yield from problems
-    if SEAT in values and not problems:
-        place = values[SEAT]["place"] or {"sprung": 1.0}
-        car = build_vehicle(model, _without_seat(values), dict.fromkeys(own, _ANY))
+    if SEAT in table and not problems:
+        place = table[SEAT]["place"] or {"sprung": 1.0}
+        car = build_vehicle(_without_seat(table), dict.fromkeys(own, _ANY))
         known = {c.name: c.angle for c in car.mechanism().coordinates}
         yield from _port_problems(("vehicle", SEAT, "place"), place, known, ())
 
 
-def inputs(model: str, values: Values) -> dict[str, str]:
+def inputs(table: VehicleTable) -> dict[str, str]:
     """Inputs that a signal may excite, with the unit of each; the default input first."""
-    if model == MECHANISM:
-        return {**({"road": "m"} if values["roads"] else {}), **forces_of(values)}
-    return {VEHICLES[model].moved: "m", **VEHICLES[model].forces}
+    if table["model"] == MECHANISM:
+        return {**({"road": "m"} if table["roads"] else {}), **forces_of(table)}
+    kind = VEHICLES[table["model"]]
+    return {kind.moved: "m", **kind.forces}
 
 
-def tracks(model: str, values: Values) -> dict[str, str] | None:
+def tracks(table: VehicleTable) -> dict[str, str] | None:
     """Track of each road of the vehicle, empty for a single one; None if the vehicle cannot be built."""
-    if any(vehicle_problems(model, values)):
+    if any(vehicle_problems(table)):
         return None
-    own = _without_seat(values)
+    own = _without_seat(table)
     try:
-        roads = build_vehicle(model, own, dict.fromkeys(mounts(model, own), _ANY)).mechanism().roads
+        roads = build_vehicle(own, dict.fromkeys(mounts(own), _ANY)).mechanism().roads
     except InerterError:
         return None
     return {road.name: road.side for road in roads}
 
 
-def _without_seat(values: Values) -> dict[str, Any]:
-    return {key: value for key, value in values.items() if key != SEAT}
+def _without_seat(table: VehicleTable) -> dict[str, Any]:
+    return {key: value for key, value in table.items() if key != SEAT}
 
 
-def _mechanism(values: Values, networks: Networks) -> Mechanism:
+def _mechanism(table: VehicleTable, networks: Networks) -> Mechanism:
     """Mechanism of the tables of its parts."""
-    given = values["measures"]
-    loads = {f"{name}_load": 1.0 for name in values["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
-    ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in values["struts"].items()}
+    given = table["measures"]
+    loads = {f"{name}_load": 1.0 for name in table["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
+    ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in table["struts"].items()}
     return Mechanism(
-        tuple(Coordinate(name, one.value, is_angle(one)) for name, one in values["coordinates"].items()),
+        tuple(Coordinate(name, one.value, is_angle(one)) for name, one in table["coordinates"].items()),
         tuple(Strut(name, networks[name], upper, lower) for name, (upper, lower) in ends.items()),
-        tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in values["tyres"].items()),
-        tuple(RoadInput(name, road["distance"], road["track"]) for name, road in values["roads"].items()),
-        tuple(Force(name, _floats(port)) for name, port in values["forces"].items()),
+        tuple(Tyre(n, networks[n], _floats(t["port"]), t["road"]) for n, t in table["tyres"].items()),
+        tuple(RoadInput(name, road["distance"], road["track"]) for name, road in table["roads"].items()),
+        tuple(Force(name, _floats(port)) for name, port in table["forces"].items()),
         PerformanceOutputs(
             tuple(OutputWeight(output, float(weight)) for output, weight in given["comfort"].items()),
             tuple(OutputWeight(output, float(weight)) for output, weight in loads.items()),
@@ -159,28 +159,28 @@ def _mechanism(values: Values, networks: Networks) -> Mechanism:
     )
 
 
-def _mechanism_words(values: Values) -> Iterator[tuple[str, float | None, str]]:
-    for name, (unit, value) in values["coordinates"].items():
+def _mechanism_words(table: VehicleTable) -> Iterator[tuple[str, float | None, str]]:
+    for name, (unit, value) in table["coordinates"].items():
         yield _in_words(in_words(name), value, unit)
-    for name, strut in values["struts"].items():
+    for name, strut in table["struts"].items():
         yield f"strut {name}", None, f"{_place(strut['upper'])} over {_place(strut['lower'])}"
-    for name, tyre in values["tyres"].items():
+    for name, tyre in table["tyres"].items():
         yield f"tyre {name}", None, f"{_place(tyre['port'])} over {tyre['road']}"
-    for name, road in values["roads"].items():
+    for name, road in table["roads"].items():
         side = f", on the {road['track']}" if road["track"] else ""
         yield f"road {name}", None, f"{format_quantity(road['distance'], 'm')} behind the first{side}"
-    for name, port in values["forces"].items():
+    for name, port in table["forces"].items():
         yield f"force {name}", None, f"on {_place(port)}"
 
 
-def _mechanism_problems(values: Values) -> Iterator[Problem]:
-    known = {name: is_angle(inertia) for name, inertia in values["coordinates"].items()}
-    roads = tuple(values["roads"])
+def _mechanism_problems(table: VehicleTable) -> Iterator[Problem]:
+    known = {name: is_angle(inertia) for name, inertia in table["coordinates"].items()}
+    roads = tuple(table["roads"])
     found: list[Problem] = []
-    for name, strut in values["struts"].items():
+    for name, strut in table["struts"].items():
         for end in ("upper", "lower"):
             found += _port_problems(("vehicle", "struts", name, end), strut[end], known, roads)
-    for name, tyre in values["tyres"].items():
+    for name, tyre in table["tyres"].items():
         found += _port_problems(("vehicle", "tyres", name, "port"), tyre["port"], known, ())
         if tyre["road"] not in roads:
             hint = nearest(tyre["road"], roads)
@@ -188,11 +188,11 @@ def _mechanism_problems(values: Values) -> Iterator[Problem]:
             found.append(
                 at(("vehicle", "tyres", name, "road"), got=quote_value(tyre["road"]), expected=wanted, hint=hint)
             )
-    for name, port in values["forces"].items():
+    for name, port in table["forces"].items():
         found += _port_problems(("vehicle", "forces", name), port, known, ())
     if not found:
         try:
-            _mechanism(values, dict.fromkeys(mounts(MECHANISM, _without_seat(values)), _ANY))
+            _mechanism(table, dict.fromkeys(mounts(_without_seat(table)), _ANY))
         except MechanismError as error:
             found.append(at(("vehicle",), str(error)))
     yield from found

@@ -38,7 +38,5 @@ def check_lines(path: Path) -> Iterator[str]:
         yield road_sentence(road, format_quantity(road.speed, "m/s", 4))
         yield from road_warnings(road)
     used = {name for text in request.layouts[request.layout].struts.values() for name in names(text)}
-    yield from vehicle_warnings(
-        request.model, request.vehicle, [(n, element) for n, element in request.elements.items() if n in used]
-    )
+    yield from vehicle_warnings(request.vehicle, [(n, element) for n, element in request.elements.items() if n in used])
     yield from (f"Note: {note}." for note in request.notes)

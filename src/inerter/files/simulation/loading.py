@@ -16,7 +16,7 @@ from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_tables, value_of
-from inerter.files.common.vehicles import inputs, parts_of, tracks, vehicle_problems
+from inerter.files.common.vehicles import inputs, tracks, vehicle_problems
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.simulation.sections import simulation_codec
 from inerter.simulation.inputs import whole_steps
@@ -41,29 +41,28 @@ def load_simulation(path: str | Path) -> SimulationRequest:
 
 
 def _resolve(path: Path, found: Mapping[str, Any], line: MeasuredLine | None) -> SimulationRequest:
-    (model, vehicle), settings, road = parts_of(found["vehicle"]), dict(found["simulation"]), found["road"]
+    settings, road = dict(found["simulation"]), found["road"]
     if settings["layout"] is None:
         settings["layout"] = next(iter(found["layouts"])) if len(found["layouts"]) == 1 else ""
     return SimulationRequest(
         title=escape_surrogates(path.stem) if found["title"] is None else found["title"],
         path=path,
-        model=model,
-        vehicle=vehicle,
+        vehicle=found["vehicle"],
         road=without_source(road, line) if road else {},
         line=line,
         elements=found["elements"],
         layouts=found["layouts"],
-        signal=signal_of(path, inputs(model, vehicle), found["signal"]),
+        signal=signal_of(path, inputs(found["vehicle"]), found["signal"]),
         **settings,
     )
 
 
 def _names(request: SimulationRequest) -> Iterator[Problem]:
     """Problems of the vehicle and its layouts, and of unknown names."""
-    yield from vehicle_problems(request.model, request.vehicle)
+    yield from vehicle_problems(request.vehicle)
     yield from layout_problems(request.elements, request.layouts)
     yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
-    moved, known = request.signal.input, inputs(request.model, request.vehicle)
+    moved, known = request.signal.input, inputs(request.vehicle)
     if moved not in known:
         hint = nearest(moved, known)
         yield at(("signal", "input"), got=quote_value(moved), expected=f"one of {some(known)}", hint=hint)
@@ -105,7 +104,7 @@ def _of_tracks(request: SimulationRequest) -> Iterator[Problem]:
     """Problems of different left and right tracks that the vehicle or the signal does not support."""
     asked = {("road", "coherence"): bool(request.coherence), ("signal", "track"): request.signal.on_tracks}
     for place in (place for place, wanted in asked.items() if wanted):
-        yield from track_problems(place, tracks(request.model, request.vehicle))
+        yield from track_problems(place, tracks(request.vehicle))
     if request.coherence and not SIGNALS[request.signal.kind].random:
         random = some(quote_value(kind.key) for kind in SIGNALS.values() if kind.random)
         fault = f"a {request.signal.kind} has none"

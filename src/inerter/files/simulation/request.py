@@ -27,14 +27,18 @@ class SimulationRequest(SimulationSettings):
 
     title: str
     path: Path = field(compare=False)
-    model: str
-    vehicle: dict[str, Any]
+    vehicle: dict[str, Any]  # the table, with its model
     road: dict[str, Any]  # by key, in SI units; empty without a road, and without roughness for what needs none
     elements: dict[str, Element]
     layouts: dict[str, StrutLayout]
     signal: SignalRequest
     layout: str = ""
     line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
+
+    @property
+    def model(self) -> str:
+        """Model of the vehicle."""
+        return str(self.vehicle["model"])
 
     @property
     def speed(self) -> float | None:
@@ -73,7 +77,7 @@ class SimulationRequest(SimulationSettings):
 
     def design(self) -> Vehicle:
         """The vehicle, or rig, with the chosen layout."""
-        return self.layouts[self.layout].design(self.model, self.vehicle, self.elements)
+        return self.layouts[self.layout].design(self.vehicle, self.elements)
 
     def make_signal(self) -> Signal:
         """The signal, of two tracks that of the left; raises `SignalError` as `signals` does."""
@@ -109,7 +113,7 @@ class SimulationRequest(SimulationSettings):
         return simulation_codec().dump(
             {
                 "title": self.title,
-                "vehicle": {"model": self.model, **self.vehicle},
+                "vehicle": self.vehicle,
                 "road": self.road or None,
                 "elements": self.elements,
                 "layouts": self.layouts,

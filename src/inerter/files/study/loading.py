@@ -15,7 +15,7 @@ from inerter.files.common.problems import refusal
 from inerter.files.common.roads import MeasuredLine, line_through, road_of, track_problems, without_source
 from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import read_tables, value_of
-from inerter.files.common.vehicles import parts_of, tracks, vehicle_problems
+from inerter.files.common.vehicles import tracks, vehicle_problems
 from inerter.files.study.limits import limits_of
 from inerter.files.study.method_problems import method_problems
 from inerter.files.study.own_indices import bare_index_problems, own_index_problems
@@ -66,7 +66,7 @@ def study_of(tables: Mapping[str, Any], path: Path) -> Study:
     asked = found["study"]
     problems = [
         *element_problems,
-        *vehicle_problems(study.model, study.vehicle),
+        *vehicle_problems(study.vehicle),
         *layout_problems({**study.elements, **study.free_networks}, study.layouts),
         *line_problems,
         *_road_problems(study),
@@ -108,7 +108,6 @@ def unchosen_problems(study: Study) -> Iterator[Problem]:
 
 def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element], line: MeasuredLine | None) -> Study:
     """The study, but for what is said by places of it."""
-    model, vehicle = parts_of(found["vehicle"])
     settings = {**found["study"], "sweeps": (), "limits": (), "tolerance": {}}
     if settings["baseline"] is None and len(found["layouts"]) > 1:
         settings["baseline"] = next(iter(found["layouts"]))
@@ -116,8 +115,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
     return Study(
         title=escape_surrogates(path.stem) if found["title"] is None else found["title"],
         path=path,
-        model=model,
-        vehicle=vehicle,
+        vehicle=found["vehicle"],
         road=None if road is None else road_of(road, None if line is None else line.shape),
         coherence=(road and road["coherence"]) or {},
         line=line,
@@ -132,7 +130,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
 
 def _road_problems(study: Study) -> Iterator[Problem]:
     if study.coherence:
-        yield from track_problems(("road", "coherence"), tracks(study.model, study.vehicle))
+        yield from track_problems(("road", "coherence"), tracks(study.vehicle))
 
 
 def _index_problems(study: Study, limits: Iterable[str]) -> Iterator[Problem]:

@@ -13,7 +13,6 @@ from inerter.files.common.codec import Codec
 from inerter.files.common.elements import free_networks_in
 from inerter.files.common.number import Number
 from inerter.files.common.roads import road_of, road_values
-from inerter.files.common.vehicles import parts_of
 from inerter.files.study.place import ELEMENTS, Place
 from inerter.files.study.sections import study_codec
 from inerter.networks.elements import Free
@@ -95,9 +94,7 @@ def _methods_in(study: Study) -> dict[str, dict[str, float]]:
 
 
 _SECTIONS = {
-    "vehicle": _Section(
-        lambda study: {"model": study.model, **study.vehicle}, lambda study, found: {"vehicle": parts_of(found)[1]}
-    ),
+    "vehicle": _Section(lambda study: study.vehicle, lambda study, found: {"vehicle": found}),
     "road": _Section(lambda study: study.road and road_values(study.road, study.coherence), _of_road),
     ELEMENTS: _Section(lambda study: {**study.elements, **study.free_networks}, lambda study, found: _elements(found)),
     "indices": _Section(lambda study: study.own_indices, lambda study, found: {"own_indices": found}),

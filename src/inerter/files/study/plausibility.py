@@ -36,7 +36,7 @@ def input_warnings(study: Study) -> list[str]:
         if one.road is not None:
             used = elements_used(one)
             elements = [(name, element) for name, element in one.elements.items() if name in used]
-            found |= dict.fromkeys([*road_warnings(one.road), *vehicle_warnings(one.model, one.vehicle, elements)])
+            found |= dict.fromkeys([*road_warnings(one.road), *vehicle_warnings(one.vehicle, elements)])
     return list(found)
 
 

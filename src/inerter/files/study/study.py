@@ -43,8 +43,7 @@ class Study(Settings):
 
     title: str
     path: Path = field(compare=False)
-    model: str
-    vehicle: dict[str, Any]
+    vehicle: dict[str, Any]  # the table, with its model
     road: Road | None  # of indices that are asked on one
     elements: dict[str, Element]  # a free element's value is named after its key, so that it is one in all layouts
     layouts: dict[str, StrutLayout]
@@ -57,6 +56,11 @@ class Study(Settings):
     free_networks: dict[str, FreeNetwork] = field(default_factory=dict)  # among the elements of the file, by name
     own_indices: dict[str, OwnIndex] = field(default_factory=dict)  # by the names that the file gives them
     method_settings: dict[str, dict[str, float]] = field(default_factory=dict)  # by method and key, in SI units
+
+    @property
+    def model(self) -> str:
+        """Model of the vehicle."""
+        return str(self.vehicle["model"])
 
     @property
     def methods(self) -> tuple[str, ...]:
@@ -196,7 +200,7 @@ class Study(Settings):
             hint = nearest(layout, self.layouts)
             raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
         here = self.at(swept) if swept else self
-        return here.layouts[layout].design(here.model, here.vehicle, here.elements, here.free_networks)
+        return here.layouts[layout].design(here.vehicle, here.elements, here.free_networks)
 
     @cached_property
     def free_units(self) -> dict[str, str]:

@@ -421,7 +421,7 @@ def test_the_whole_command_has_words_for_a_switch_of_its_own(known, tmp_path, ca
         (DAMPER.replace(', knee = "50 mm/s"', ""), '.knee: missing; expected knee = "1 m/s".'),
         (DAMPER.replace("50 mm/s", "50 mm"), '.knee: got "50 mm": incompatible unit "mm" (millimeter)'),
         (DAMPER.replace("50 mm/s", "-50 mm/s"), '.knee: got "-50 mm/s": not positive'),
-        (DAMPER.replace('"3 kN s/m"', '{ from = "1 N s/m" }'), ".damping: got a table with"),
+        (DAMPER.replace('"3 kN s/m"', '{ from = "1 N s/m" }'), '.damping.to: missing; expected to = "2 N s/m".'),
         (DAMPER.replace('"3 kN s/m"', '{ from = "2 N s/m", to = "1 N s/m" }'), ".damping: got reversed ends"),
     ],
 )

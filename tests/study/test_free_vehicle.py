@@ -179,7 +179,7 @@ def test_the_inertias_of_a_mechanism_have_bounds_that_are_places_and_a_fixed_des
         ('to = "90 kg"', 'to = "90 kg m^2"', "unlike units, kg and kg m^2"),
         ('from = "20 kg"', 'from = "0 kg"', "more than 0 kg"),
         ('from = "20 kg"', 'from = "20 N"', "a mass such as"),
-        ('from = "20 kg", ', "", "expected one value, or"),
+        ('from = "20 kg", ', "", 'wheel.from: missing; expected from = "1 kg"'),
         ("c = {", 'wheel = "1 kN/m"\nc = {', "free, and there is an element wheel too"),
         ("""pitch = "1 m\"""", "pitch = 1", "pitch is an angle"),
     ],

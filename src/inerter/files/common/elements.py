@@ -4,21 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
-from inerter.files.common.codec import INVALID, Codec, Declaration, KeyPath, LoadContext, RawEntry, TableCodec, section
+from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, RawEntry, TableCodec, section
 from inerter.files.common.codecs import NamesCodec, TaggedCodec, any_of
 from inerter.files.common.entries import (
     AMOUNT,
     LOWER,
     UPPER,
-    Amount,
     QuantityCodec,
     amount,
-    check_order,
     element_name,
     one_of,
     other_bound,
+    range_codec,
     text_of,
     with_bounds,
 )
@@ -36,31 +35,9 @@ KIND = "kind"
 _WHY = "Kind of element, where the unit alone does not determine it."
 
 
-class Range(NamedTuple):
-    """The two ends of a free value."""
-
-    lower: Amount
-    upper: Amount
-
-
-def _range(lower: Amount, upper: Amount) -> Range:
-    check_order(lower, upper)
-    return Range(lower, upper)
-
-
-def _range_codec(lower: str = "100 N s/m", upper: str = "100 kN s/m") -> TableCodec:
-    """Table of a range, with examples of its ends."""
-    return TableCodec(
-        (
-            Declaration(AMOUNT, "Lower bound.", f'{LOWER} = "{lower}"', name=LOWER, attribute="lower"),
-            Declaration(AMOUNT, "Upper bound.", f'{UPPER} = "{upper}"', name=UPPER, attribute="upper"),
-        ),
-        make=_range,
-        about="A free value: an optimiser chooses it between two bounds.",
-    )
-
-
-RANGE = _range_codec()
+RANGE = range_codec(
+    AMOUNT, "100 N s/m", "100 kN s/m", about="A free value: an optimiser chooses it between two bounds."
+)
 
 
 def _range_codec_for(raw: Mapping[str, Any]) -> TableCodec:
@@ -69,7 +46,8 @@ def _range_codec_for(raw: Mapping[str, Any]) -> TableCodec:
         known = amount(raw.get(LOWER, raw.get(UPPER)))
     except ValueError:
         return RANGE
-    return _range_codec(*(format_quantity(factor * known.value, known.unit) for factor in (1e-3, 1e3)))
+    lower, upper = (format_quantity(factor * known.value, known.unit) for factor in (1e-3, 1e3))
+    return range_codec(AMOUNT, lower, upper)
 
 
 @dataclass(frozen=True)
@@ -106,7 +84,7 @@ class ElementCodec(Codec):
         found = _range_codec_for(raw).load(raw, context)
         if found is INVALID:
             return INVALID  # type: ignore[no-any-return]
-        return kinds_by_unit()[found.lower.unit].of(Free(found.lower.value, found.upper.value, name), name)
+        return kinds_by_unit()[found.lower.unit].of(found.free(name), name)
 
     def dump(self, value: Element | FreeNetwork) -> str | dict[str, Any]:
         """Value or range alone where the unit determines the kind of element; else a table."""

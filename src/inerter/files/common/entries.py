@@ -7,10 +7,19 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 from inerter.field_metadata import Field, TextChoice
-from inerter.files.common.codec import REQUIRED, Codec, Declaration, KeyPath, LoadContext, Scalar
+from inerter.files.common.codec import (
+    INVALID,
+    REQUIRED,
+    Codec,
+    Declaration,
+    KeyPath,
+    LoadContext,
+    Scalar,
+    TableCodec,
+)
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, invalid_entry
-from inerter.files.common.schema import list_schema, or_range_schema, quantity_schema, words_schema
+from inerter.files.common.schema import list_schema, quantity_schema, words_schema
 from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.formatting import format_alike, format_number, format_range, in_words
@@ -61,8 +70,8 @@ class QuantityCodec(Codec):
     def load(self, raw: Any, context: LoadContext) -> float | Free:
         """The value in its unit, or the free value, which has the name of its key."""
         if self.free and isinstance(raw, dict):
-            found = range_of(raw, lambda end: Amount(self.unit, positive_in(end, self.unit)), self.unit, context)
-            return found.value  # type: ignore[no-any-return]
+            found = self._range().load(raw, context)
+            return found if found is INVALID else found.free(context.place[-1])  # type: ignore[no-any-return]
         match self.least:
             case "positive":
                 return positive_in(raw, self.unit)
@@ -78,7 +87,13 @@ class QuantityCodec(Codec):
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the text."""
         one = quantity_schema(self.unit, least=self.least)
-        return or_range_schema(one) if self.free else one
+        return {"anyOf": [one, self._range().schema()]} if self.free else one
+
+    def _range(self) -> TableCodec:
+        def make(lower: float, upper: float) -> Range:
+            return range_between(Amount(self.unit, lower), Amount(self.unit, upper))
+
+        return range_codec(positive(self.unit), f"1 {self.unit}", f"2 {self.unit}", make)
 
     def numbers(self, value: Any, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """Quantity, and its bounds if it is a design variable."""
@@ -92,15 +107,52 @@ class QuantityCodec(Codec):
         return other_bound(value, keys[0], number) if keys else number
 
 
-def range_of(raw: Mapping[str, Any], end: Callable[[Any], Amount], unit: str, context: LoadContext) -> Amount:
-    """Free value of a table with the two ends of a range; `unit` is that of the example in messages."""
-    if set(raw) != {LOWER, UPPER}:
-        listed = ", ".join(map(quote_value, raw)) or "nothing"
-        expected = f'one value, or {{ from = "1 {unit}", to = "2 {unit}" }}'
-        raise EntryError(got=f"a table with {listed}", expected=expected)
-    lower, upper = end(raw[LOWER]), end(raw[UPPER])
-    check_order(lower, upper)
-    return Amount(lower.unit, Free(lower.value, upper.value, context.place[-1]))
+class Range(NamedTuple):
+    """The two ends of a range, in ascending order."""
+
+    lower: Amount
+    upper: Amount
+
+    def free(self, name: str) -> Free:
+        """Free value between them."""
+        return Free(self.lower.value, self.upper.value, name)
+
+
+def range_between(lower: Amount, upper: Amount) -> Range:
+    """Range of a search; raises `EntryError` unless its ends have one unit, ascend, and are not too far apart."""
+    if lower.unit != upper.unit:
+        raise EntryError(got=f"ends of unlike units, {lower.unit} and {upper.unit}", expected="one unit for both")
+    check_ascending(lower.value, upper.value, lower.unit, "Write a single value without from and to.")
+    if lower.value > 0.0 and upper.value > _WIDEST * lower.value:
+        ends = format_range(lower.value, upper.value, lower.unit, 12)
+        expected = f"an upper bound of at most {format_number(_WIDEST)} times the lower one"
+        raise EntryError(got=ends, fault="wider than a search can cover", expected=expected)
+    return Range(lower, upper)
+
+
+def check_ascending(lower: float, upper: float, unit: str, if_equal: str) -> None:
+    """Raises `EntryError` unless `lower` is less than `upper`; `if_equal` is the remedy for equal ends."""
+    if lower >= upper:
+        how, remedy = ("equal", if_equal) if lower == upper else ("reversed", "Swap them.")
+        first, last = format_alike([lower, upper], unit, 12)
+        ends = f'{how} ends, from = "{first}" and to = "{last}"'
+        raise EntryError(got=ends, expected="from less than to", hint=remedy)
+
+
+def range_codec(
+    end: Codec, lower: str, upper: str, make: Callable[..., tuple[Any, Any]] = range_between, about: str = ""
+) -> TableCodec:
+    """Table of the two ends of a range, each with an example; `make` turns both into one value."""
+    ends = ((LOWER, "lower", "Lower bound.", lower), (UPPER, "upper", "Upper bound.", upper))
+    return TableCodec(
+        tuple(
+            Declaration(end, sentence, f'{name} = "{text}"', name=name, attribute=attribute)
+            for name, attribute, sentence, text in ends
+        ),
+        make,
+        lambda value: dict(zip(("lower", "upper"), value, strict=True)),
+        about=about,
+    )
 
 
 def text_of(value: float | Free, unit: str) -> str | dict[str, str]:
@@ -390,22 +442,6 @@ def layout_name(name: Any) -> str:
             expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, such as S3e",
         )
     return str(name)
-
-
-def check_order(lower: Amount, upper: Amount) -> None:
-    """Raises ValueError unless both ends have one unit and `lower` is the lower."""
-    if lower.unit != upper.unit:
-        raise EntryError(got=f"ends of unlike units, {lower.unit} and {upper.unit}", expected="one unit for both")
-    if lower.value >= upper.value:
-        equal = lower.value == upper.value
-        how, remedy = ("equal", "Write a single value without from and to.") if equal else ("reversed", "Swap them.")
-        first, last = format_alike([lower.value, upper.value], lower.unit, 12)
-        ends = f'{how} ends, from = "{first}" and to = "{last}"'
-        raise EntryError(got=ends, expected="from less than to", hint=remedy)
-    if lower.value > 0.0 and upper.value > _WIDEST * lower.value:
-        ends = format_range(lower.value, upper.value, lower.unit, 12)
-        expected = f"an upper bound of at most {format_number(_WIDEST)} times the lower one"
-        raise EntryError(got=ends, fault="wider than a search can cover", expected=expected)
 
 
 def quantity_list(values: Any) -> tuple[str, ...]:

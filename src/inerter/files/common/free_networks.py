@@ -6,12 +6,11 @@ from typing import Any
 
 from inerter.files.common.codec import Declaration, TableCodec, attributes, section
 from inerter.files.common.entries import (
-    LOWER,
-    UPPER,
     YES_OR_NO,
     Amount,
-    check_order,
     positive,
+    range_between,
+    range_codec,
     whole,
 )
 from inerter.files.common.problem import EntryError
@@ -35,20 +34,12 @@ def is_free_network(raw: Any) -> bool:
 def _bounds_codec(kinds: str) -> TableCodec:
     """The least and the largest value of the elements of a kind."""
     kind, lower, upper = _KINDS[kinds]
-    ends = ((LOWER, "lower", "Lower", lower), (UPPER, "upper", "Upper", upper))
 
     def bounds(lower: float, upper: float) -> tuple[float, float]:
-        check_order(Amount(kind.unit, lower), Amount(kind.unit, upper))
+        range_between(Amount(kind.unit, lower), Amount(kind.unit, upper))
         return lower, upper
 
-    return TableCodec(
-        tuple(
-            Declaration(positive(kind.unit), f"{word} bound of each.", f'{name} = "{text}"', name=name, attribute=end)
-            for name, end, word, text in ends
-        ),
-        bounds,
-        lambda value: dict(zip(("lower", "upper"), value, strict=True)),
-    )
+    return range_codec(positive(kind.unit), lower, upper, bounds)
 
 
 def _kind_keys() -> list[Declaration]:

@@ -28,12 +28,6 @@ _NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![eE][+-]?\d)"
 _NOT_ZERO = r"(?=[\d.]*[1-9])"
 
 
-def or_range_schema(one: dict[str, Any]) -> dict[str, Any]:
-    """A quantity of this schema, or a table with the two ends of a free value."""
-    ends = {"type": "object", "properties": {"from": one, "to": one}, "required": ["from", "to"]}
-    return {"anyOf": [one, {**ends, "additionalProperties": False}]}
-
-
 def quantity_schema(*units: str, least: str = "") -> dict[str, Any]:
     """A number with a unit of one of these kinds, of any if none is named.
 

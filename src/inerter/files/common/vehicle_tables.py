@@ -10,11 +10,13 @@ from typing import Any, ClassVar
 from inerter.errors import RegistryError, UnitError
 from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
+    INVALID,
     REQUIRED,
     Codec,
     Declaration,
     KeyPath,
     LoadContext,
+    Scalar,
     TableCodec,
     key,
     keyed_dataclass,
@@ -31,14 +33,14 @@ from inerter.files.common.entries import (
     declaration_of,
     not_negative,
     other_bound,
-    range_of,
+    range_codec,
     text_of,
     with_bounds,
     word,
 )
 from inerter.files.common.number import Number
 from inerter.files.common.problem import invalid_entry
-from inerter.files.common.schema import or_range_schema, quantity_schema
+from inerter.files.common.schema import quantity_schema
 from inerter.networks.elements import NAME, Free
 from inerter.units import PURE, parse_one_of, parse_quantity
 from inerter.validation import is_number
@@ -92,6 +94,9 @@ def part_name(name: Any) -> str:
     return str(name)
 
 
+_RANGE = range_codec(Scalar(_bound, lambda: quantity_schema("kg", "kg m^2", least="positive")), "1 kg", "2 kg")
+
+
 @dataclass(frozen=True)
 class InertiaCodec(Codec):
     """A mass, or the moment of inertia of an angle, which may be `free`."""
@@ -103,7 +108,8 @@ class InertiaCodec(Codec):
     def load(self, raw: Any, context: LoadContext) -> Amount:
         """The inertia; a free one has the name of its key."""
         if self.free and isinstance(raw, dict):
-            return range_of(raw, _bound, "kg", context)
+            found = _RANGE.load(raw, context)
+            return found if found is INVALID else Amount(found.lower.unit, found.free(context.place[-1]))
         return inertia(raw)
 
     def dump(self, value: Amount) -> Any:
@@ -113,7 +119,7 @@ class InertiaCodec(Codec):
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the text."""
         one = quantity_schema("kg", "kg m^2", least="not negative")
-        return or_range_schema(one) if self.free else one
+        return {"anyOf": [one, _RANGE.schema()]} if self.free else one
 
     def numbers(self, value: Amount, words: str) -> Iterator[tuple[KeyPath, Number]]:
         """The mass or the moment of inertia with its bounds; none of a node without mass."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.files.common.entries import MOST_POINTS, quantity_text
+from inerter.files.common.entries import MOST_POINTS, check_ascending, quantity_text
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.suggest import nearest, some
@@ -18,7 +18,6 @@ from inerter.files.study.place import Place, Sweep, element_at, place_of
 from inerter.files.study.places import number_at, places, with_numbers
 from inerter.files.study.sections import SweepRange
 from inerter.files.study.study import Study, elements_used
-from inerter.formatting import format_alike
 from inerter.networks.elements import Free, Tied
 from inerter.units import are_compatible, is_unit_for, parse_quantity, quote_value, unit_in
 
@@ -108,11 +107,7 @@ def value_of(number: Number, text: str) -> float:
 
 def _spread(number: Number, entry: SweepRange, low: float, high: float) -> tuple[float, ...]:
     """Values from one end to the other."""
-    if low >= high:
-        how, remedy = ("equal", "Give them apart.") if low == high else ("reversed", "Swap them.")
-        first, last = format_alike([low, high], number.unit, 12)
-        ends = f'{how} ends, from = "{first}" and to = "{last}"'
-        raise EntryError(got=ends, expected="from less than to", hint=remedy)
+    check_ascending(low, high, number.unit, "Give them apart.")
     if entry.spacing == "log" and low == 0.0:
         wanted = 'from greater than zero, or spacing = "linear"'
         raise EntryError(got='spacing = "log" from zero', expected=wanted)

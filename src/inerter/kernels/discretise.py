@@ -81,21 +81,18 @@ def set_binary_units(A: Matrix, units: Floats) -> None:
 
 @part(typed=True, apart=True)
 def _bound_sway(
-    guards: Matrix, chain: Matrix, units: Floats, n: int, used: Ints, steps: Matrix, bends: int, top: int
+    guards: Matrix, chain: Matrix, units: Floats, n: int, used: Ints, steps: Matrix, bends: int, last: int, top: int
 ) -> None:
     """One eighth of the largest second derivative of each guard over a step, as weights on absolute values.
 
-    The chain is over states in these units. Its first terms go to the rows from `bends` on as they are, if that is not
-    negative.
+    The chain is over states in these units. Its first terms go to the columns from `bends` on as they are, the others
+    to those from `last` on, and all to those from `top` on, if that is another place.
     """
     k, columns, size = guards.shape[0], n + used.shape[0] + 1, chain.shape[0]
     term, power, plain, norm = np.zeros((columns, k)), np.empty((k, size)), np.empty((k, size)), 0.0
     for i in range(k):
         for j in range(size):
             power[i, j] = guards[i, j] * units[j]
-    for j in range(columns):
-        for i in range(k):
-            steps[j, top + i] = 0.0
     for j in range(size):
         total = 0.0
         for i in range(size):
@@ -114,9 +111,11 @@ def _bound_sway(
         weight, first = order * (order - 1) / 8.0, bends + (order - 2) * k
         for j in range(columns):
             for i in range(k):
-                if bends >= 0 and 2 <= order < 2 + SHARP:
+                if 2 <= order < 2 + SHARP:
                     steps[j, first + i] = weight * term[j, i]
                 else:
+                    steps[j, last + i] += weight * abs(term[j, i])
+                if top != last:
                     steps[j, top + i] += weight * abs(term[j, i])
         if not more and order > 2.0 * norm:  # each further term is less than half of the one before
             break
@@ -197,6 +196,7 @@ def discretise(
     if shape.jumps > 0:
         into_knots(outputs, n, moving.used, steps, rows)
         rows += sizes.squares
-    _bound_sway(guards, balanced, units, n, moving.used, steps, rows if shape.sharp else -1, shape.rows)
+    top, last = shape.rows, shape.rows if shape.sharp else shape.rows + k
+    _bound_sway(guards, balanced, units, n, moving.used, steps, rows if shape.sharp else last + k, last, top)
     fill_second_step(steps, shape)
     return 1.0 / max(spectral_radius_bound(maps, n), 1e-9)

@@ -44,7 +44,13 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp
     Lines are those of a step, the jumps of the state with each input, and those of two steps.
     """
     rows = n + 2 * elements + outputs * (2 if jumps else 1) + (SHARP * elements if sharp else 0)
-    return 2 * n + 3 * inputs + 2 + jumps, round_up(rows), round_up(elements)
+    return 2 * n + 3 * inputs + 2 + jumps, round_up(rows), sway_columns(elements, sharp)
+
+
+@part(borrowing=True, inside=True)
+def sway_columns(elements: int, sharp: bool) -> int:
+    """Columns of the sway of guards: all terms as sizes; unless `sharp`, the last ones too, and the first as values."""
+    return round_up(elements if sharp else (2 + SHARP) * elements)
 
 
 def room_of(shape: MarchShape) -> int:
@@ -167,6 +173,21 @@ def fill_sways(steps: Array, path: Path, first: int, stop: int, shape: MarchShap
 
 
 @part(inside=True, borrowing=True)
+def fill_sharp_sways(steps: Array, path: Path, b: int, shape: MarchShape, out: Array) -> None:
+    """Fill `out` with closer bounds of each guard's sway within step b, whose first terms are values."""
+    n, m, k, last = shape.states, shape.inputs, shape.elements, shape.rows + shape.elements
+    for e in range(k):
+        for term in range(1 + SHARP):
+            at = last + term * k + e
+            total = steps[n + m, at]
+            for j in range(n):
+                total += steps[j, at] * (abs(path.rows[b, j]) if term == 0 else path.rows[b, j])
+            for j in range(m):
+                total += steps[n + j, at] * (abs(path.inputs[b, j]) if term == 0 else path.inputs[b, j])
+            out[e] = total if term == 0 else out[e] + abs(total)
+
+
+@part(inside=True, borrowing=True)
 def is_safe(limits: Array, low: Array, high: Array, sways: Array, shape: MarchShape) -> bool:
     """Whether no guard can be crossed within steps whose rows are between `low` and `high`, with these sways."""
     safe, n, k = True, shape.states, shape.elements
@@ -182,7 +203,7 @@ def count_safe(limits: Array, steps: Array, path: Path, count: int, shape: March
     """Number of steps before the first one within which a guard might be crossed.
 
     All are safe if the extremes of the guards over all of them are; else each is judged, by the sway of the whole
-    block, and by its own if it is not safe by that.
+    block, by its own if it is not safe by that, and by the closest bound of that in the end.
     """
     if shape.elements == 0:
         return count
@@ -195,7 +216,11 @@ def count_safe(limits: Array, steps: Array, path: Path, count: int, shape: March
             if not is_safe(limits, row, row, of_block, shape):
                 fill_sways(steps, path, b, b + 1, shape, of_step)
                 if not is_safe(limits, row, row, of_step, shape):
-                    return b
+                    if shape.sharp:
+                        return b
+                    fill_sharp_sways(steps, path, b, shape, of_step)
+                    if not is_safe(limits, row, row, of_step, shape):
+                        return b
     return count
 
 
@@ -232,7 +257,7 @@ def march_steps(
 ) -> int:
     """Step while no guard can be crossed within the step; returns the first segment that needs event detection."""
     n, one = shape.states, shape.states + shape.inputs + 1
-    path, columns = path_in(lines.work, shape), shape.rows + round_up(shape.elements)
+    path, columns = path_in(lines.work, shape), shape.rows + sway_columns(shape.elements, shape.sharp)
     steps, jumps = (
         as_numbers(lines.steps, 0, (one, columns)),
         as_numbers(lines.steps, one * columns, (shape.jumps, columns)),

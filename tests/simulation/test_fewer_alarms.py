@@ -1,10 +1,11 @@
-"""What the event-driven integrator spends on events: bounds of guards within a step, and alarms."""
+"""What the event-driven integrator spends on events: bounds of guards within a step, alarms, and roots."""
 
 import numpy as np
 import pytest
 
 import inerter as it
-from inerter.kernels.flow import inputs_from, series
+from inerter.kernels import flow
+from inerter.kernels.flow import first_root, inputs_from, series, value_at
 from inerter.kernels.integrate import fill_sharp_sways, fill_sways, path_in, room_of
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import tabulate
@@ -64,3 +65,18 @@ def test_hardly_any_step_without_an_event_is_searched_for_one():
     spent = event_driven._PIECES - int(run.motion.place["left"][0])
     assert run.events > 100
     assert spent < 5.5 * run.events
+
+
+@pytest.mark.parametrize("line", [[1.0, -4.0], [1.0, -2.0, -8.0], [0.3, -1.0, 0.0, 0.0]])
+def test_a_root_that_newton_meets_to_the_last_bit_is_not_searched_further(monkeypatch, line):
+    asked = []
+
+    def counted(c, count, s):
+        asked.append(s)
+        return value_at(c, count, s)
+
+    monkeypatch.setattr(flow, "value_at", counted)
+    c = np.array(line)
+    root = first_root(c, c.size, np.zeros(64))
+    assert len(asked) < 12
+    assert value_at(c, c.size, root) == pytest.approx(0.0, abs=1e-16)

@@ -151,9 +151,11 @@ def polish(c: Array, count: int, a: float, b: float) -> float:
             b = s
         slope = slope_at(c, count, s)
         after = s - value / slope if slope < 0.0 else a
+        if slope < 0.0 and abs(after - s) <= CLOSE * s:  # also if it is an end of the interval now
+            return after
         if not (a < after < b):
             after = 0.5 * (a + b)
-        if abs(after - s) <= CLOSE * after or b - a <= CLOSE * b:
+        if b - a <= CLOSE * b:
             return after
         s = after
     return s

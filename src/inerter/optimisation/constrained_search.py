@@ -20,8 +20,7 @@ from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Bound, Sense
 from inerter.optimisation.local import LocalOptimum, report_costly_search
 from inerter.optimisation.minimax_level import LogRows, lowest_level
-from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
-from inerter.work.progress import report
+from inerter.optimisation.starts import APPROACHED, TIGHT, converge_promising, searches_from
 
 Array = NDArray[np.float64]
 KEPT = 1e-7  # tolerance of a constraint, of the logarithm; the exact optimum is on the limit
@@ -29,10 +28,8 @@ KEPT_COSTLY = 1e-4  # the same for values that are simulated
 _STEEP = 10.0  # weight of the constraint violation in the selection of starts
 _PEAKS = 8  # slots for peaks during the approach
 _HIDDEN = -700.0  # logarithm of an absent peak
-_PROMISING, _SAME_PLACE = 0.02, 0.01  # as in searches without constraints
 _STANDS_OUT = 1e-9
 _EXACTLY = 1e-8  # constraint violation that is ignored in the comparison of two ends of one search
-_TIGHT = 1e-5  # distance of a logarithm from its limit up to which a constraint may be active
 _TRUSTED = 1e-3  # largest relative residual of the gradient balance of trusted multipliers
 Known = tuple[Any, ...]  # peaks of each function; None for those of the current point
 
@@ -117,21 +114,7 @@ def _log_rows(function: Differentiable, point: Array, which: Any, following: boo
 def searches(problem: ConstrainedProblem, first: Sequence[Array]) -> list[LocalOptimum]:
     """A local search from each start; those close to the best feasible one are converged fully."""
     near = searches_from(first, lambda start, _: _approach_minimax(problem, start), APPROACHED)
-    near.sort(key=lambda local: (max(local.excess, _TIGHT), local.value))
-    ended: list[LocalOptimum] = []
-    for number, local in enumerate(near):
-        if local.excess > near[0].excess + _TIGHT or local.value > near[0].value * (1.0 + _PROMISING):
-            ended.append(local)
-            continue
-        here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < _SAME_PLACE)
-        same = next(here, None)
-        if same is None:
-            share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
-            report("ends", number, len(near), best=lowest_feasible([*ended, *near]), share=share)
-            ended.append(resumable_search(local.point, partial(refine_minimax, problem, local)))
-        else:
-            ended.append(replace(same, evaluations=local.evaluations))
-    return ended
+    return converge_promising(near, partial(refine_minimax, problem))
 
 
 def _approach_minimax(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
@@ -220,7 +203,7 @@ def sensitivities(problem: ConstrainedProblem, point: Array) -> list[float]:
     for number, (peaks, function) in enumerate(zip(known, problem.functions, strict=True)):
         logs, gradients = _log_rows(function, point, peaks, False)
         if number == 0:
-            near = logs >= logs.max() - _TIGHT
+            near = logs >= logs.max() - TIGHT
             slopes += list(gradients[near])
             own += [1.0] * int(near.sum())
             continue
@@ -228,9 +211,9 @@ def sensitivities(problem: ConstrainedProblem, point: Array) -> list[float]:
         off = logs - np.log(bound.limit.value)
         top = off.max()
         if bound.limit.sense is Sense.AT_MOST:
-            rows = np.flatnonzero(np.abs(off) <= _TIGHT)
+            rows = np.flatnonzero(np.abs(off) <= TIGHT)
         else:
-            rows = np.array([int(np.argmax(off))]) if abs(top) <= _TIGHT else np.zeros(0, dtype=int)
+            rows = np.array([int(np.argmax(off))]) if abs(top) <= TIGHT else np.zeros(0, dtype=int)
         for row in rows:
             slopes.append(gradients[row])
             own.append(0.0)

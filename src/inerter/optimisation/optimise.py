@@ -30,8 +30,8 @@ from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult, constraint_results, infeasible, with_limits
 from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region_within
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
-from inerter.optimisation.local import SAME_PLACE, LocalOptimum, approach, descend, polish, trust_region
-from inerter.optimisation.starts import APPROACHED, lowest_feasible, resumable_search, searches_from
+from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
+from inerter.optimisation.starts import APPROACHED, converge_promising, resumable_search, searches_from
 from inerter.validation import check_whole
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
@@ -45,7 +45,6 @@ AGREEMENT = 1e-6  # relative difference up to which two starts have found the sa
 COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
 _MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are evaluated, and searches from the best of them, of a costly index
 _APART = 0.05  # logarithmic distance above which two starts of such searches are distinct
-_PROMISING = 0.02  # relative distance from the best up to which a search for a peak gain is converged fully
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _CONFIRMED = 1e-8  # relative difference up to which two codes have found the same value
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
@@ -365,21 +364,7 @@ def _searches(problem: ConstrainedProblem, first: list[Array], quick: bool = Fal
             first, lambda start, found: descend(objective, start, lower, upper, found if quick else ()), 1.0
         )
     near = searches_from(first, lambda start, _: approach(objective, start, lower, upper), APPROACHED)
-    near.sort(key=lambda local: local.value)
-    ended: list[LocalOptimum] = []
-    for number, local in enumerate(near):
-        if local.value > near[0].value * (1.0 + _PROMISING):
-            ended.append(local)
-            continue
-        here = (end for end in ended if np.abs(np.log(end.point / local.point)).max() < SAME_PLACE)
-        same = next(here, None)
-        if same is None:
-            share = APPROACHED + (1.0 - APPROACHED) * number / len(near)
-            report("ends", number, len(near), best=lowest_feasible([*ended, *near]), share=share)
-            ended.append(resumable_search(local.point, partial(polish, objective, local, lower, upper)))
-        else:
-            ended.append(LocalOptimum(same.point, same.value, local.evaluations))
-    return ended
+    return converge_promising(near, lambda local: polish(objective, local, lower, upper))
 
 
 def check_free(vehicle: Vehicle) -> dict[str, Free]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -225,3 +226,35 @@ def test_a_step_of_a_rounding_error_hardly_moves_anything(kind: str, masters: li
         before, master.time = master.get(*shown), 0.0
         master.step(step)
         assert master.get(*shown) == pytest.approx(before, rel=1e-9)
+
+
+def exact_compliance(mass: float, unsprung: float, inertance: float) -> float:
+    """Acceleration of a body for each N on it, with an inerter between it and an unsprung mass, in rationals."""
+    m, mu, b = Fraction(mass), Fraction(unsprung), Fraction(inertance)
+    return float((mu + b) / (m * mu + b * (m + mu)))
+
+
+@pytest.mark.parametrize("kind", sampled(KINDS, ["fmu"]))
+@pytest.mark.parametrize("mass", [3e-3, 3e-6, 3e-9])
+def test_a_body_of_grams_on_an_inerter_of_tons(mass: float, kind: str, masters: list[Master], tmp_path: Path) -> None:
+    """Both masses move as one, and what they weigh cancels against the inertance."""
+    unsprung, inertance = 1.7 * mass, 3.7e9
+    car = it.QuarterCar(300.0, 40.0, 2e5, it.Spring(2e4) | it.Damper(2e3) | B)
+    master = opened(masters, car, tmp_path, kind, sprung_mass=mass, unsprung_mass=unsprung, b=inertance)
+    master.set("sprung_force", 1.0)
+    expected = exact_compliance(mass, unsprung, inertance)
+    assert master.get("sprung_acceleration")[0] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", sampled(KINDS, ["fmu"]))
+def test_masses_that_no_digit_of_an_inertance_shows_are_refused(
+    kind: str, masters: list[Master], tmp_path: Path
+) -> None:
+    car = it.QuarterCar(300.0, 40.0, 2e5, it.Spring(2e4) | it.Damper(2e3) | B)
+    master = opened(masters, car, tmp_path, kind)
+    master.fmu.reset()
+    with pytest.raises(Exception, match="failed with status"):
+        master.start({"sprung_mass": 1e-12, "unsprung_mass": 1e-12, "b": 1e15})
+    assert master.messages == [
+        "no motion follows from these parameters: the equations are singular, or nearly so in double precision"
+    ]

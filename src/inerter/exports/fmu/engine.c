@@ -33,6 +33,7 @@
 #define LEVELS 1
 #endif
 #define TERMS 20
+#define WORST 1e-9 /* error of a row of the matrices by rounding, of its largest entry */
 #define KEPT 6 /* flows of so many lengths of steps */
 #define BITS 36 /* of a length between two breaks of late inputs, so that rounding makes no new ones */
 
@@ -82,48 +83,96 @@ typedef struct {
 
 static double gauge(double number) { return ldexp(1.0, number > 0.0 ? ilogb(number) : 0); }
 
-/* A, B, C, D and Q from the equations, by elimination of the unknowns. 0 if memory lacks, or the equations are singular. */
+/* A number of twice the digits of a double, and a bound for what rounding has made of it. */
+typedef struct {
+    double high, low, error;
+} Twofold;
+
+/* a - b c */
+static Twofold less_product(Twofold a, Twofold b, Twofold c)
+{
+    const double product = b.high * c.high, sum = a.high - product, taken = sum - a.high;
+    const double rest = fma(b.high, c.high, -product) + (b.high * c.low + b.low * c.high);
+    const double low = ((a.high - (sum - taken)) - (product + taken)) + (a.low - rest);
+    Twofold found;
+    found.high = sum + low;
+    found.low = low - (found.high - sum);
+    found.error = a.error + fabs(b.high) * c.error + b.error * (fabs(c.high) + c.error);
+    found.error += ldexp(fabs(a.high) + fabs(product), -102);
+    return found;
+}
+
+static Twofold quotient(Twofold a, Twofold b)
+{
+    Twofold first = {0.0, 0.0, 0.0}, found;
+    double second;
+    first.high = a.high / b.high;
+    second = less_product(a, first, b).high / b.high;
+    found.high = first.high + second;
+    found.low = second - (found.high - first.high);
+    found.error = (a.error + fabs(found.high) * b.error) / fabs(b.high) + ldexp(fabs(found.high), -102);
+    return found;
+}
+
+/* A, B, C, D and Q from the equations, by elimination of the unknowns in twice the digits of a double, since values many
+   decades apart cancel. 0 if memory lacks, or the equations are singular or little else than rounding. */
 static int eliminate(Model *model)
 {
-    double *m = calloc((size_t)HEIGHT * SPAN + 1, sizeof(double));
+    Twofold *m = calloc((size_t)HEIGHT * SPAN + 1, sizeof(Twofold));
     int i, j, k;
     if (m == NULL) return 0;
-    for (i = 0; i < NENTRIES; i++)
-        m[ENTRY_ROW[i] * SPAN + ENTRY_COLUMN[i]] +=
-            ENTRY_VALUE[i] * (ENTRY_PARAMETER[i] < 0 ? 1.0 : model->now.p[ENTRY_PARAMETER[i]]);
+    for (i = 0; i < NENTRIES; i++) {
+        Twofold *const entry = &m[ENTRY_ROW[i] * SPAN + ENTRY_COLUMN[i]];
+        Twofold gain = {0.0, 0.0, 0.0}, value = {-1.0, 0.0, 0.0};
+        gain.high = ENTRY_VALUE[i];
+        if (ENTRY_PARAMETER[i] >= 0) value.high = -model->now.p[ENTRY_PARAMETER[i]];
+        *entry = less_product(*entry, gain, value);
+    }
     for (i = 0; i < NETA; i++) { /* rows of the balance have other units each */
         double largest = 0.0;
-        for (j = 0; j < NETA; j++) largest = fmax(largest, fabs(m[i * SPAN + j]));
+        for (j = 0; j < NETA; j++) largest = fmax(largest, fabs(m[i * SPAN + j].high));
         largest = gauge(largest);
-        for (j = 0; j < SPAN; j++) m[i * SPAN + j] /= largest;
+        for (j = 0; j < SPAN; j++) {
+            Twofold *const entry = &m[i * SPAN + j];
+            entry->high /= largest, entry->low /= largest, entry->error /= largest;
+        }
     }
     for (k = 0; k < NETA; k++) {
         int best = k;
         for (i = k + 1; i < NETA; i++)
-            if (fabs(m[i * SPAN + k]) > fabs(m[best * SPAN + k])) best = i;
-        if (m[best * SPAN + k] == 0.0) {
+            if (fabs(m[i * SPAN + k].high) > fabs(m[best * SPAN + k].high)) best = i;
+        if (fabs(m[best * SPAN + k].high) <= m[best * SPAN + k].error) {
             free(m);
             return 0;
         }
         for (j = 0; j < SPAN; j++) {
-            const double other = m[k * SPAN + j];
+            const Twofold other = m[k * SPAN + j];
             m[k * SPAN + j] = m[best * SPAN + j];
             m[best * SPAN + j] = other;
         }
         for (i = k + 1; i < HEIGHT; i++) {
-            const double factor = m[i * SPAN + k] / m[k * SPAN + k];
-            if (factor != 0.0)
-                for (j = k; j < SPAN; j++) m[i * SPAN + j] -= factor * m[k * SPAN + j];
+            const Twofold factor = quotient(m[i * SPAN + k], m[k * SPAN + k]);
+            if (m[i * SPAN + k].high != 0.0)
+                for (j = k; j < SPAN; j++) m[i * SPAN + j] = less_product(m[i * SPAN + j], factor, m[k * SPAN + j]);
         }
     }
-    for (i = 0; i < NX; i++)
-        for (j = 0; j < NX + NI; j++)
-            *(j < NX ? &model->A[i][j] : &model->B[i][j - NX]) = m[(NETA + i) * SPAN + NETA + j];
-    for (i = 0; i < NY; i++)
-        for (j = 0; j < NX + NI; j++)
-            *(j < NX ? &model->C[i][j] : &model->D[i][j - NX]) = m[(NETA + NX + i) * SPAN + NETA + j];
-    for (i = 0; i < NR; i++)
-        for (j = 0; j < NX + NI; j++) model->Q[i][j] = m[(NETA + NX + NY + i) * SPAN + NETA + j];
+    for (i = NETA; i < HEIGHT; i++) {
+        const int row = i - NETA;
+        double largest = 0.0, error = 0.0;
+        for (j = NETA; j < SPAN; j++) {
+            const Twofold *const entry = &m[i * SPAN + j];
+            const double value = fabs(entry->high) > entry->error ? entry->high : 0.0;
+            const int column = j - NETA;
+            largest = fmax(largest, fabs(value)), error = fmax(error, entry->error);
+            if (row < NX) *(column < NX ? &model->A[row][column] : &model->B[row][column - NX]) = value;
+            else if (row < NX + NY) *(column < NX ? &model->C[row - NX][column] : &model->D[row - NX][column - NX]) = value;
+            else model->Q[row - NX - NY][column] = value;
+        }
+        if (!(largest == 0.0 || error <= WORST * largest)) {
+            free(m);
+            return 0;
+        }
+    }
     free(m);
     return 1;
 }

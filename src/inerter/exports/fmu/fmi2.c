@@ -78,7 +78,7 @@ FMI2 Status fmi2EnterInitializationMode(Component c) { (void)c; return OK; }
 FMI2 Status fmi2ExitInitializationMode(Component c)
 {
     ((Model *)c)->is_running = 1;
-    return assemble(c) ? OK : ERROR;
+    return answer(c, assemble(c));
 }
 FMI2 Status fmi2Terminate(Component c) { (void)c; return OK; }
 FMI2 Status fmi2Reset(Component c) { rest(c); return OK; }

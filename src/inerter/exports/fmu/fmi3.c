@@ -90,7 +90,7 @@ FMI3 Status fmi3EnterInitializationMode(Handle c, Boolean defined, Float64 toler
 FMI3 Status fmi3ExitInitializationMode(Handle c)
 {
     ((Model *)c)->is_running = 1;
-    return assemble(c) ? OK : ERROR;
+    return answer(c, assemble(c));
 }
 NOTHING(Terminate)
 REFUSED(EnterEventMode)

@@ -34,6 +34,14 @@ static Variable variable(unsigned reference)
     return found;
 }
 
+/* What to answer when the matrices were to be made, by whether they were. */
+static Status answer(Model *model, int is_made)
+{
+    if (is_made) return OK;
+    tell(model, ERROR, "no motion follows from these parameters: the equations are singular, or nearly so in double precision");
+    return ERROR;
+}
+
 /* What the force gains at once for each m/s^2 of the upper end. */
 static double inertance(const Model *model)
 {
@@ -63,7 +71,7 @@ static Status read_values(Model *model, const unsigned references[], size_t n, d
         case MOTION: value[i] = model->now.x[MOTION_STATE[one.number]]; break;
         case PARAMETER: value[i] = model->now.p[one.number]; break;
         case OUTPUT:
-            if (!prepare(model)) return ERROR;
+            if (answer(model, prepare(model)) != OK) return ERROR;
             if (one.number < NY) value[i] = output(model, one.number);
             else if (one.number == NY) value[i] = model->now.mean;
             else if (one.number == NY + 1) value[i] = inertance(model), model->is_coupled = 1;
@@ -90,7 +98,7 @@ static Status write_values(Model *model, const unsigned references[], size_t n, 
             model->now.given = 1;
             break;
         case MOTION:
-            if (!assemble(model)) return ERROR;
+            if (answer(model, assemble(model)) != OK) return ERROR;
             move(model, one.number, value[i]);
             break;
         case PARAMETER:
@@ -117,7 +125,7 @@ static Status directional_derivative(Model *model, const unsigned unknown[], siz
     double dx[NX + 1] = {0.0}, du[NU + 1] = {0.0}, moved[NX + 1];
     size_t i;
     int j;
-    if (!prepare(model)) return ERROR;
+    if (answer(model, prepare(model)) != OK) return ERROR;
     for (i = 0; i < m; i++) {
         const Variable one = variable(known[i]);
         if (one.kind == MOTION) {
@@ -163,7 +171,7 @@ static Status take_step(Model *model, double time, double step)
         return ERROR;
     }
     model->now.time = time;
-    if (!prepare(model)) return ERROR;
+    if (answer(model, prepare(model)) != OK) return ERROR;
     if (STRUT && step > 0.0) status = warn(model);
     if (STRUT) model->now.x[NX - 1] = 0.0; /* its last state is the impulse of its force */
     if (step > 0.0 && !advance(model, step)) {

@@ -45,21 +45,10 @@ def quick_fit(
     optimum = best_fit_of(problem, optimum.point, evaluations=40)
     misfit = judge.misfit(problem, optimum.point)
     return SolvedFit(
-        problem,
-        optimum,
-        (),
-        checked,
-        (lead,),
-        (),
-        (),
-        1.0,
-        judge,
-        misfit,
-        FitOptions(),
-        Adhesion({}),
-        None,
-        np.zeros(optimum.point.size, dtype=bool),
-    )
+        problem=problem, optimum=optimum, profiles=(), checked=checked, leads=(lead,), costs=(), findings=(),
+        predicted=1.0, judge=judge, misfit=misfit, options=FitOptions(), adhesion=Adhesion({}), scales=None,
+        noisy=np.zeros(optimum.point.size, dtype=bool),
+    )  # fmt: skip
 
 
 def explained(solution: SolvedFit) -> tuple[list[Explanation], Localisation]:

@@ -100,9 +100,11 @@ def solve(
     if progress is not None:
         progress(1.0)
     return SolvedFit(
-        problem, optimum, tuple(found), checked, tuple(leads), tuple(costs), tuple(findings),
-        drawn.predicted, judge, judge.misfit(problem, optimum.point),
-        asked, adhesion, scale_effects(problem, optimum, asked), decided_by_noise(problem, optimum, found, asked.seed),
+        problem=problem, optimum=optimum, profiles=tuple(found), checked=checked, leads=tuple(leads),
+        costs=tuple(costs), findings=tuple(findings), predicted=drawn.predicted, judge=judge,
+        misfit=judge.misfit(problem, optimum.point), options=asked, adhesion=adhesion,
+        scales=scale_effects(problem, optimum, asked),
+        noisy=decided_by_noise(problem, optimum, found, asked.seed),
     )  # fmt: skip
 
 

@@ -4,8 +4,9 @@ The smoothed displacement still has noise, and the device passes it into the for
 not depend on the values, those that let less of it pass fit better, even if they fit the motion worse: where the motion
 determines a value badly, the noise decides it. With weights by the noise that passes at each value, noise alone has the
 same mean square at all values, and only the motion counts (errors in variables, as in Pintelon and Schoukens 2012,
-chapter 9). Such a fit scatters more and takes longer, so it does not replace the first one; but an interval that does
-not contain its value is one of the noise.
+chapter 9). Such a fit scatters more and takes longer, so it does not replace the first one. But where the motion does
+not determine the values, as one tone cannot determine three of them, fits far from each other are equally good: an
+interval that does not contain the values of all of them is one of the noise.
 """
 
 from __future__ import annotations
@@ -20,14 +21,15 @@ from inerter.identification.experiment import Experiment
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, constrained_optimum, steps_of
 from inerter.identification.noise import lines_of, steady_whitening, whitening_of
 from inerter.identification.problem import FitProblem
+from inerter.identification.search import distinct
 from inerter.identification.sensors import encoder_noise, noise_residuals
 from inerter.networks.elements import Network
 from inerter.records.filtering import gain
 
 Matrix = NDArray[np.float64]
-_ROUNDS = 2
-_FACTORS = np.exp([-3.6, -2.4, -1.2, 1.2, 2.4, 3.6])  # of a value, at which other best fits are looked for
-_SLIGHT = 1.1  # noise density over that of the load cell, up to which the displacement's decides nothing
+_FACTORS = np.exp([-3.6, -2.4, -1.2, 1.2, 2.4, 3.6])  # of a value, from where other fits are sought
+_ELSEWHERE, _EVALUATIONS, _ACCURACY = 3, 12, 1e-5  # other fits: number, evaluations, relative change that ends them
+_AS_GOOD = 2.0  # rise of the cost up to which another fit is as good, as at the ends of an interval of 95 %
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +57,7 @@ def passed_noise(e: Experiment) -> PassedNoise:
 def decided_by_noise(
     problem: FitProblem, optimum: BestFit, profiles: Sequence[CostProfile], seed: int
 ) -> NDArray[np.bool_]:
-    """Mask of the values whose intervals do not contain those of the best fit with weights by the passed noise.
+    """Mask of the values whose intervals do not contain those of every fit with weights by the passed noise.
 
     None for a device with friction or gaps, which passes more at some instants than at others.
     """
@@ -64,30 +66,28 @@ def decided_by_noise(
     if not all(element.plain and element.switch is None for element in problem.rig.device.elements()):
         return none
     by_noise = replace(problem, spectra=tuple(passed_noise(e) for e in problem.experiments))
-    if max(float(lines.max()) for lines in by_noise.spectra_at(point)) < _SLIGHT:
+    forces, left = problem.forces(point), noise_residuals(problem, point, (seed, 1))
+    if left is None or any(force is None for force in forces):
         return none
-    for _ in range(_ROUNDS):
-        forces, left = problem.forces(point), noise_residuals(problem, point, (seed, 1))
-        if left is None or any(force is None for force in forces):
-            return none
-        by_noise.whitenings = [
-            whitening_of(e.record.force - force, steady_whitening(draws, e.noise, e.kept, lines))
-            for e, force, draws, lines in zip(
-                problem.experiments, forces, left, by_noise.spectra_at(point), strict=True
-            )
-            if force is not None
-        ]
-        point = _best_of_valleys(by_noise, best_fit_of(by_noise, point, steps_of(optimum)))
-    return np.array([not p.lower.end <= value <= p.upper.end for p, value in zip(profiles, point, strict=True)])
+    by_noise.whitenings = [
+        whitening_of(e.record.force - force, steady_whitening(draws, e.noise, e.kept, lines))
+        for e, force, draws, lines in zip(problem.experiments, forces, left, by_noise.spectra_at(point), strict=True)
+        if force is not None
+    ]
+    points = _fits_as_good(by_noise, best_fit_of(by_noise, point, steps_of(optimum)))
+    ends = np.array([(p.lower.end, p.upper.end) for p in profiles])
+    return np.asarray(np.any((points < ends[:, 0]) | (points > ends[:, 1]), axis=0))
 
 
-def _best_of_valleys(problem: FitProblem, optimum: BestFit) -> Matrix:
-    """The best fit, also from where one value is a few times as large or small and all others are fitted to that."""
+def _fits_as_good(problem: FitProblem, optimum: BestFit) -> Matrix:
+    """The best fit, and fits as good from where one value is many times as large or small (fits, coordinates)."""
     space = problem.space
     values = space.to_values(optimum.point)
-    cost, start = optimum.cost, optimum.point
-    for i in np.flatnonzero(space.logarithmic):
-        for factor in _FACTORS:
-            found = constrained_optimum(problem, optimum, int(i), space.coordinate_of(int(i), values[i] * factor))
-            cost, start = min((cost, start), found, key=lambda pair: pair[0])
-    return start if cost == optimum.cost else best_fit_of(problem, start, steps_of(optimum)).point
+    found = [
+        constrained_optimum(problem, optimum, int(i), space.coordinate_of(int(i), values[i] * factor))
+        for i in np.flatnonzero(space.logarithmic)
+        for factor in _FACTORS
+    ]
+    starts = distinct([point for _, point in found], [cost for cost, _ in found])[:_ELSEWHERE]
+    fits = [best_fit_of(problem, start, evaluations=_EVALUATIONS, accuracy=_ACCURACY) for start in starts]
+    return np.array([optimum.point, *(fit.point for fit in fits if fit.cost < optimum.cost + _AS_GOOD)])

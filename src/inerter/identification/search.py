@@ -51,7 +51,7 @@ def search(
     for stage, (horizon, kept, evaluations) in enumerate(stages):
         part = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
-        candidates = _distinct(candidates, costs)[:kept]
+        candidates = distinct(candidates, costs)[:kept]
         what = f"search on {'all' if horizon == 1.0 else format_share(horizon)} of the information"
         tasks = [(part, candidate) for candidate in candidates]
         found = map_problems(
@@ -69,7 +69,7 @@ def _improve_candidate(evaluations: int, accuracy: float, problem: FitProblem, s
     return point, cost
 
 
-def _distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
+def distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
     """The candidates, the best first, without those equal to a better one."""
     result: list[Matrix] = []
     for i in np.argsort(costs):

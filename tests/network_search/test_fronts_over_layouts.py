@@ -5,6 +5,7 @@ from __future__ import annotations
 from concurrent.futures import ProcessPoolExecutor
 from functools import cache
 from itertools import pairwise
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -101,7 +102,7 @@ def _all_tasks(left, level, bounds):
 
 
 def test_whatever_shares_the_work_the_front_is_the_same():
-    with ProcessPoolExecutor(2) as executor:
+    with ProcessPoolExecutor(2, get_context("fork")) as executor:
         shared = it.search(car(3), (COMFORT, LOAD), NORM, executor=executor)
     assert facts(shared) == facts(found(3))
 

@@ -7,6 +7,7 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise
+from multiprocessing import get_context
 
 import numpy as np
 import pytest
@@ -93,8 +94,8 @@ def test_whatever_shares_the_work_the_result_is_the_same(way, monkeypatch):
         monkeypatch.setattr(module, "_GROUP", 5)
         shared = it.search(car(3), INDICES["load"], NORM)
     else:
-        pool = ThreadPoolExecutor if way == "threads" else ProcessPoolExecutor
-        with pool(2) as executor:
+        forked = get_context("fork")  # with what the modules of the tests register, as no other process has it
+        with ThreadPoolExecutor(2) if way == "threads" else ProcessPoolExecutor(2, forked) as executor:
             shared = it.search(car(3), INDICES["load"], NORM, executor=executor)
     assert facts(shared) == facts(found("load", 3))
 

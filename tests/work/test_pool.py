@@ -180,7 +180,7 @@ class Elsewhere(Executor):
 def test_numbers_of_another_version_are_not_taken() -> None:
     with (
         Pool(executor=Elsewhere(lambda found: replace(found, origin="another"))) as pool,
-        pytest.raises(WorkError, match=r"another version of inerter, .* Install the same versions"),
+        pytest.raises(WorkError, match=r"another version of inerter, .* registered\. Install the same versions"),
     ):
         list(pool.spread(abs, [1]))
 

@@ -19,7 +19,7 @@ from inerter.work.origin import VERSION, origin
 if TYPE_CHECKING:
     from distributed import Client
 
-INSTALL = "Install the same versions in all places."
+INSTALL = "Install the same versions in all places, and import there what registers elements, vehicles or indices."
 _LOST = "the scheduler has ended, or the connection to it was lost."
 _FRESH = 2.0  # seconds for which a number of workers is cached
 _FIRST = 60.0  # timeout of the first worker [s]

@@ -80,7 +80,8 @@ def check_result(future: Future[Any], work: object, chunk: Chunk[Item]) -> Execu
         return ExecutorResult([], fault=f"{_brief(repr(found))} returned instead of results")
     if found.origin != origin():
         raise WorkError(
-            "a process of the executor has another version of inerter, or of the numerical libraries. "
+            "a process of the executor has another version of inerter, other numerical libraries, or lacks what this "
+            "process registered. "
             f"{cluster.INSTALL}"
         )
     if found.chunk != chunk.number:

@@ -66,7 +66,7 @@ class FirstOrder:
 @lru_cache(maxsize=1024)
 def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     """Complex amplitudes of the lowest `count` spectral lines of a realisation."""
-    return multisine(road, seed, lowest=1.0 / period).coefficient[:count].copy()
+    return multisine(road, seed, lowest=1.0 / period, highest=count / period).coefficient
 
 
 def first_order(

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 from browser import Served, Visitor, drop, wait_until
 from folders import EXAMPLES
+
+import inerter as it
+from inerter.files.rig.loading import load_rig
 
 SCROLLED = """() => {
   const page = document.documentElement;
@@ -349,3 +353,36 @@ def test_a_verdict_at_former_optima_is_doubtful_until_they_are_found_anew(visito
         assert not sentence.inner_text().startswith("At values")
         page.wait_for_timeout(200)
         assert page.evaluate(PALE) == []
+
+
+def test_a_layout_keeps_the_focus_when_the_order_changes(visitor: Visitor) -> None:
+    page = visitor.page
+    order = "[...document.querySelectorAll('.answers .pick')].map(pick => pick.title)"
+    before = page.evaluate(order)
+    page.locator(".answers .pick[title=S2]").focus()
+    page.evaluate("""() => {
+      const slider = document.getElementById("slider elements.k");
+      slider.value = slider.min;
+      slider.dispatchEvent(new Event("input", { bubbles: true }));
+    }""")
+    page.wait_for_function(f"before => {order}.join() !== before.join()", arg=before)
+    assert page.evaluate("document.activeElement.title") == "S2"
+    page.keyboard.press("ArrowDown")
+    after = page.evaluate(order)
+    assert page.evaluate("document.activeElement.title") == (after[after.index("S2") + 1 :] or ["S2"])[0]
+
+
+def test_a_fit_is_in_sight_below_its_button(visitor: Visitor, tmp_path: Path) -> None:
+    """The findings about the record come after it."""
+    page = visitor.page
+    record = tmp_path / "fit.csv"
+    it.write_record(replace(load_rig(EXAMPLES / "rig_fit.toml"), duration=1.0).run(), record)
+    visitor.open(record)
+    page.wait_for_selector(".records .finding")
+    page.get_by_role("button", name="Identify", exact=True).click()
+    head = page.locator(".fit").first
+    head.wait_for()
+    panel, fit = page.locator("#tab-panel").bounding_box(), head.bounding_box()
+    assert panel is not None
+    assert fit is not None
+    assert fit["y"] < panel["y"] + panel["height"] - 60.0

@@ -7,7 +7,7 @@ import { indicesIn, nextLayout } from "../state/document.js";
 import { aligned, estimated, placed, scaled, unitFor, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
-import { html, useMemo, useState } from "../parts/html.js";
+import { html, useLayoutEffect, useMemo, useRef, useState } from "../parts/html.js";
 import { layoutColour } from "../parts/colours.js";
 import { useLate, useShown } from "../parts/shown.js";
 import { Sketch, sketchesOf } from "./sketch.js";
@@ -49,6 +49,7 @@ function rowsOf(state, value) {
 }
 
 /** In another order they are drawn anew: Chromium keeps the former style of a row that is moved and changed at once.
+ * The layout that had the focus has it again.
  * @param {{store: Store, answer: import("../state/answers.js").Shown}} props */
 function Ranking({ store, answer: { is, value, before } }) {
   const state = store.get();
@@ -71,16 +72,24 @@ function Ranking({ store, answer: { is, value, before } }) {
     event.preventDefault();
     /** @type {HTMLElement} */ (next).focus();
   };
+  const table = useRef(/** @type {HTMLElement | null} */ (null));
+  const order = rows.map(({ layout }) => layout).join();
+  const active = globalThis.document.activeElement;
+  const focused = active instanceof HTMLElement && table.current?.contains(active) ? active.title : null;
+  useLayoutEffect(() => {
+    const picks = [.../** @type {HTMLElement} */ (table.current).querySelectorAll(".pick")];
+    /** @type {HTMLElement[]} */ (picks).find(({ title }) => title === focused)?.focus();
+  }, [order]);
   const { parts, trees, about } = state;
   const sketches = useMemo(() => sketchesOf(state), [document.study.layouts, parts, trees, about]);
-  return html`<div class="scroll" role="group" aria-label="Layouts" onKeyDown=${turn}>
+  return html`<div class="scroll" role="group" aria-label="Layouts" ref=${table} onKeyDown=${turn}>
     <table><thead><tr><th scope="col">layout</th>
       <th scope="col" title=${goal && withUnit(goal.title, units.goal.unit)}>${
         goal ? withUnit(goal.index, units.goal.unit) : goalOf(state)}</th>
       <th scope="col">against ${baseline}</th>
       ${others.map((/** @type {any} */ { index, title }, /** @type {number} */ i) => html`<th scope="col" key=${index}
         title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
-    <tbody key=${rows.map(({ layout }) => layout).join()}>${rows.map((row) => html`<${Row} key=${row.layout}
+    <tbody key=${order}>${rows.map((row) => html`<${Row} key=${row.layout}
       store=${store} row=${row} units=${units}
       sketched=${sketches[row.layout] ?? []}
       stale=${!isRight(row.layout)} compared=${isRight(baseline)}

@@ -39,10 +39,10 @@ export function RigPanel({ store, api }) {
       <button class=${fits.length === 0 ? "main" : "edged"}>Identify</button>
     </form>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
+    ${fits.map((job, i) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} main=${i === 0} />`)}
     <ul class="records">
       ${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api}
         record=${record} />`)}</ul>
-    ${fits.map((job, i) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} main=${i === 0} />`)}
   </div>`;
 }
 

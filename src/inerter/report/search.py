@@ -30,7 +30,15 @@ from inerter.files.study.search_tables import (
     real_networks_table,
 )
 from inerter.files.study.searching import TABLE, LayoutFront, LayoutSearch, StudySearch, tables_of
-from inerter.formatting import capital, format_count, format_list, format_percent, format_percent_size, format_quantity
+from inerter.formatting import (
+    capital,
+    format_count,
+    format_list,
+    format_percent,
+    format_percent_size,
+    format_quantity,
+    format_share,
+)
 from inerter.indices.names import title_with_name
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
@@ -40,7 +48,7 @@ from inerter.report.sections import Section
 from inerter.table import records
 from inerter.work.progress import report
 
-_NEAR = 0.01  # share within which a smaller network is as good as the best
+_NEAR = 0.01  # share within which a smaller network is nearly as good as the best
 _MOST_FAILED = 5  # networks that are named for one reason
 _MOST_REASONS = 3
 
@@ -78,7 +86,10 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
         near = ""
         if smaller.n_elements < best.n_elements:
             behind = format_percent_size(-improvement(smaller.value, best.value))
-            near = f"; with {format_count(smaller.n_elements, 'elements')}, {smaller.layout} is only {behind} worse"
+            near = (
+                f"; the smallest network within {format_share(_NEAR)}, {smaller.layout}, has "
+                f"{format_count(smaller.n_elements, 'elements')} and is {behind} worse"
+            )
         yield (
             f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
             f"{format_quantity(best.value, best.unit)}{against}{near}."

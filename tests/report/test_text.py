@@ -9,9 +9,9 @@ from synthetic import LONG, TITLES, designs, improved, judged, sweep, terminal_t
 
 from inerter.formatting import format_quantity
 from inerter.methods.registry import brief_words_of
-from inerter.report.index_summary import crossings, sweep_headlines
+from inerter.report.index_summary import best_layouts, crossings, sweep_headlines
 from inerter.report.text import WIDTH, table_lines
-from inerter.report.verdicts import best_layouts, verdict_sentences
+from inerter.report.verdicts import verdict_sentences
 from inerter.table import Row, Table, cells, columns
 
 NAMES = st.from_regex(r"[A-Za-z0-9][A-Za-z0-9_+.-]{0,39}", fullmatch=True)

@@ -66,6 +66,39 @@ def _doubt(results: xr.Dataset, index: str) -> str:
     return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}). "
 
 
+def best_layouts(results: xr.Dataset, index: str) -> list[str]:
+    """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
+    row = one_method(results).sel(index=index)
+    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name != "layout"])
+    values = np.atleast_1d(row["value"].values).tolist()
+    least = equally_least(values)
+    if not least:
+        return []
+    margins = margins_of(row, least[0])
+    names = results["layout"].values.tolist()
+    best = [i for i, value in enumerate(values) if i in least or value - values[least[0]] <= margins[i]]
+    return _simplest_first(results, [names[i] for i in best])
+
+
+def margins_of(row: xr.Dataset, best: int) -> list[float]:
+    """Margin of each value over the `best` within the 95 % confidence interval; zero without uncertainties.
+
+    Where there is a baseline, errors are those of differences from it on the same roads.
+    """
+    if "standard_error" not in row or "realisations" not in row:
+        return [0.0] * row.sizes.get("layout", 1)
+    names, baseline = np.atleast_1d(row["layout"].values).tolist(), row.attrs["baseline"]
+    errors = np.atleast_1d(row["standard_error"].values)
+    if baseline and "improvement_error" in row:
+        own = np.atleast_1d(row["improvement_error"].values) / 100.0 * float(row["value"].sel(layout=baseline))
+        known = [names.index(baseline) == i or np.isfinite(own[i]) for i in range(len(names))]
+        errors = np.where(known, np.where(np.array(names) == baseline, 0.0, own), errors)
+    freedom = np.maximum(np.atleast_1d(row["realisations"].values) - 1, 1)
+    student = scipy.special.stdtrit(np.minimum(freedom, freedom[best]), 0.975)
+    found = student * np.hypot(errors, errors[best])
+    return [float(margin) for margin in np.nan_to_num(found)]
+
+
 def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:
     """Layouts sorted by number of elements, otherwise in the given order."""
     if "elements" not in results.coords:

@@ -7,7 +7,6 @@ from math import hypot, isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy
 
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
@@ -24,13 +23,13 @@ from inerter.figures.labels import (
     layouts,
     method_label,
     methods,
-    one_method,
 )
 from inerter.files.study.study import Study
 from inerter.formatting import format_list
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
+from inerter.report.index_summary import margins_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -84,11 +83,6 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
         method=brief_words_of(method) if method else "",
         remedy=remedy_of(method) if method else "",
     )
-
-
-def best_layouts(results: xr.Dataset, index: str) -> list[str]:
-    """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
-    return [one.name for one in study_decision(one_method(results), index).winners]
 
 
 def _design(
@@ -162,27 +156,8 @@ def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improve
 def _margin(row: xr.Dataset, first: str, second: str) -> float:
     """Difference of two values within their 95 % confidence interval; zero without uncertainties."""
     names = np.atleast_1d(row["layout"].values).tolist()
-    margins = _margins_of(row, names.index(second))
+    margins = margins_of(row, names.index(second))
     return float(margins[names.index(first)])
-
-
-def _margins_of(row: xr.Dataset, best: int) -> list[float]:
-    """Margin of each value over the `best` within the 95 % confidence interval; zero without uncertainties.
-
-    Where there is a baseline, errors are those of differences from it on the same roads.
-    """
-    if "standard_error" not in row or "realisations" not in row:
-        return [0.0] * row.sizes.get("layout", 1)
-    names, baseline = np.atleast_1d(row["layout"].values).tolist(), row.attrs["baseline"]
-    errors = np.atleast_1d(row["standard_error"].values)
-    if baseline and "improvement_error" in row:
-        own = np.atleast_1d(row["improvement_error"].values) / 100.0 * float(row["value"].sel(layout=baseline))
-        known = [names.index(baseline) == i or np.isfinite(own[i]) for i in range(len(names))]
-        errors = np.where(known, np.where(np.array(names) == baseline, 0.0, own), errors)
-    freedom = np.maximum(np.atleast_1d(row["realisations"].values) - 1, 1)
-    student = scipy.special.stdtrit(np.minimum(freedom, freedom[best]), 0.975)
-    found = student * np.hypot(errors, errors[best])
-    return [float(margin) for margin in np.nan_to_num(found)]
 
 
 def _relative_error(design: xr.Dataset) -> float:

@@ -141,7 +141,7 @@ BAD = {
     "a unit of zero": (good, {"units": {"force": "0 N"}}, "is not a unit of force"),
     "both interval and time": (good, {"interval": 1e-3, "time": "time"}, "not both"),
     "an interval of nothing": (good, {"interval": 0.0}, "must be a positive number of s, got 0.0"),
-    "NaN bursts": (columns(time, ("x [m]", holed(5, 6, 7, 30)), force), {}, "4 samples that are missing .* up to 3"),
+    "NaN bursts": (columns(time, ("x [m]", holed(5, 6, 7, 30)), force), {}, "lacks 4 samples .* up to 3"),
     "NaN bursts that are too long": (
         columns(time, ("x [m]", holed(*range(9, 40))), force), {"gaps": "fill"}, "31 consecutive samples of"),
     "nothing but NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "fill"}, "fewer than 4 samples have"),

@@ -8,6 +8,7 @@ from concurrent.futures import Executor
 from typing import Unpack
 
 from inerter.errors import IdentificationError
+from inerter.formatting import format_quantity
 from inerter.identification import hypotheses
 from inerter.identification.arguments import checked_records, model_of
 from inerter.identification.conclusions import fit_of
@@ -82,10 +83,7 @@ def solution_of(
     """Solution of the least-squares problem of `identify`, before conclusions."""
     given, rig = _validate(records, model)
     given = [apply_scales(record, asked) for record in given]
-    sought = any(r.force_bandwidth is None for r in given) if asked.delay is None else asked.delay
-    longest = hypotheses.LONGEST_DELAY if sought is True else float(sought)
-    if not is_number(longest) or not 0.0 <= longest < 0.5 * min(r.duration for r in given):
-        raise IdentificationError(f"delay must be True, False or its largest size in s, got {asked.delay!r}.")
+    longest = _longest_delay(given, asked.delay)
     _check_gain(rig, asked.gain)
     assumed = [hypotheses.gain()] if asked.gain else []
     assumed += [hypotheses.delay(longest)] if longest > 0.0 else []
@@ -102,6 +100,24 @@ def _validate(records: Record | Sequence[Record], model: Network) -> tuple[list[
             "The model has no free values to identify. Write, for example, Spring(free(1e5, 1e7, name='ks'))."
         )
     return given, rig
+
+
+def _longest_delay(records: Sequence[Record], asked: bool | float | None) -> float:
+    """Largest delay of the force that is sought [s]: of None, a usual one if the bandwidth of a load cell is unknown.
+
+    Raises `IdentificationError` unless it is a number of at least 0 below half of every record.
+    """
+    sought = any(r.force_bandwidth is None for r in records) if asked is None else asked
+    longest = hypotheses.LONGEST_DELAY if sought is True else float(sought)
+    if not is_number(longest) or longest < 0.0:
+        raise IdentificationError(f"delay must be True, False or its largest size in s, got {asked!r}.")
+    shortest = min(records, key=lambda record: record.duration)
+    if longest > 0.0 and longest >= 0.5 * shortest.duration:
+        raise IdentificationError(
+            f"A delay of the force of up to {format_quantity(longest, 's')} is sought, but {shortest.source!r} lasts "
+            f"{format_quantity(shortest.duration, 's')}, not twice as long. Use a longer record, or delay = false."
+        )
+    return longest
 
 
 def _check_gain(rig: Rig, gain: bool) -> None:

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 from scipy.ndimage import binary_dilation, find_objects, label
 
 from inerter.errors import RecordError
-from inerter.formatting import format_alike, format_quantity
+from inerter.formatting import format_alike, format_count, format_quantity
 from inerter.records.channels import Samples
 from inerter.records.remedy import Action, Remedy
 from inerter.validation import is_number
@@ -171,8 +171,8 @@ def _refusal(source: str, bad: dict[str, Mask]) -> RecordError:
     found = true_runs(mask)
     longest = max(stop - start for start, stop in found)
     return RecordError(
-        f"{source}: the {role} has {int(mask.sum())} samples that are missing or not finite, in {len(found)} "
-        f"runs of up to {longest}, the first at sample {found[0][0]}. Read it with ",
+        f"{source}: the {role} lacks {format_count(int(mask.sum()), 'samples')} (empty, or not finite), up to "
+        f"{longest} in a row, the first at sample {found[0][0]}. Read it with ",
         *(Remedy(Action.GAPS, "fill"), " (short ones are interpolated), "),
         *(Remedy(Action.GAPS, 0.05), " (those up to 0.05 s) or "),
         *(Remedy(Action.GAPS, "longest"), " (the longest gap-free part is kept)."),

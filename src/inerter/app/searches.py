@@ -193,7 +193,7 @@ class _Ranking:
 
         parameters = each.parameters or ideal.parameters
         return self._row(self.plans[self.layout, one.index], ideal.topology, parameters, change) | {
-            **_value(each.value, Status(StatusKind(each.status), each.message)),
+            **_value(each.value, Status(StatusKind(each.status), each.message) or one.real_gain_status(each)),
             "method": each.method,
             "standard_error": each.standard_error,
             "ideal": ideal.value,

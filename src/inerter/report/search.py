@@ -126,15 +126,16 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
         if not known:
             continue
         best = min(known, key=lambda each: each.value)
-        gain = improvement(best.value, one.real_baseline(method))
+        gain = one.real_gain(best)
         told = format_percent(gain, bound=one.real_gain_bound(best))
         against = f", {told} on {found.study.baseline}" if isfinite(gain) else ""
-        doubt = "" if best.ok else f" ({best.status_text.rstrip('.')})"
+        doubts = ["" if best.ok else best.status_text, one.real_gain_status(best).doubt if isfinite(gain) else ""]
+        doubt = "; ".join(text.rstrip(".") for text in doubts if text)
         yield (
             f"{capital(one.heading)} with real inerters ({brief_words_of(method)}): {best.network} is the best of "
             f"{format_count(len(own), 'networks')}, "
             f"{format_quantity(best.value, one.result.unit, bound=best.error_bound)}{against}"
-            f"{doubt}."
+            f"{doubt and f' ({doubt})'}."
         )
 
 

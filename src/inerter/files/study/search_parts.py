@@ -9,10 +9,12 @@ from typing import Any
 
 from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import Case, Outcome
+from inerter.files.study.limits import limits_in
 from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import best_design
 from inerter.methods.composite_index import estimate_of
+from inerter.methods.method import Method
 from inerter.methods.registry import with_decisive_method
 from inerter.network_search.fronts import FrontPlan, FrontScale, FrontTask, NetworkPoints, front_group
 from inerter.network_search.network_optimum import SearchedNetwork
@@ -20,6 +22,8 @@ from inerter.network_search.plan import SearchPlan, search_group
 from inerter.network_search.real_inerters import optimise_with_real_inerters, with_real_inerters
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.enumeration import Topology
+from inerter.optimisation.optimise import Optimum, optimise
+from inerter.systems.descriptor import linear_notes
 
 Designs = Mapping[Case, Outcome]
 
@@ -152,31 +156,44 @@ class RealPart(StudyPart["RealResult"]):
         """The index with the values of the ideal network, and with the best values of the real one."""
         method = study.method(self.method, threads)
         if self.found is None:
-            design = best_design(study, designs, str(study.baseline), self.index)
-            estimate = estimate_of(design, study.resolve_index(self.index, str(study.baseline)), method)
-            return self._result(
-                value=estimate.value,
-                error=estimate.standard_error,
-                status=estimate.status,
-                error_bound=estimate.error_bound,
-            )
+            return self._baseline(study, designs, method)
         assert study.real_inerters is not None
         real, friction = study.real_inerters.shaft, study.real_inerters.friction
         kept = estimate_of(with_real_inerters(self.found, real, friction), self.found.plan.index, method)
-        best = optimise_with_real_inerters(self.found, method, friction=friction, real=real)
+        return self._optimised(
+            optimise_with_real_inerters(self.found, method, friction=friction, real=real),
+            kept=kept.value,
+            kept_bound=kept.error_bound,
+            kept_doubt=with_decisive_method(kept.status, self.method).doubt,
+        )
+
+    def _baseline(self, study: Study, designs: Designs, method: Method) -> RealResult:
+        """The baseline at the best values by the method; what has no friction or backlash has those of the study."""
+        layout = str(study.baseline)
+        index, design = study.resolve_index(self.index, layout), study.design(layout)
+        if self.method != study.optimise and design.free_values() and linear_notes(design.mechanism()):
+            limits = [limit for several in limits_in(study) for limit in several]
+            return self._optimised(optimise(design, index, method, subject_to=limits, seed=study.seed))
+        estimate = estimate_of(best_design(study, designs, layout, self.index), index, method)
+        return self._result(
+            value=estimate.value,
+            error=estimate.standard_error,
+            status=with_decisive_method(estimate.status, self.method),
+            error_bound=estimate.error_bound,
+        )
+
+    def _optimised(self, best: Optimum, **more: Any) -> RealResult:
         is_feasible = best.status.kind is not StatusKind.INFEASIBLE
         return self._result(
             value=best.value if is_feasible else nan,
             error=best.estimate.standard_error,
             status=with_decisive_method(best.status, self.method),
             error_bound=best.estimate.error_bound,
-            kept=kept.value,
-            kept_bound=kept.error_bound,
-            kept_doubt=with_decisive_method(kept.status, self.method).doubt,
             parameters=best.parameters,
             active_bounds=best.active_bounds,
             starts=best.n_starts,
             agreed=best.n_converged,
+            **more,
         )
 
     def _result(self, *, value: float, error: float | None, status: Status, **more: Any) -> RealResult:

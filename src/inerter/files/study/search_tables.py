@@ -229,7 +229,11 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
             *(gains if compared else []),
             f"{each.agreed} of {each.starts}" if each.starts else None,
         ]
-        doubts = ["" if each.ok else each.status_text, each.kept_doubt and f"same values: {each.kept_doubt}"]
+        doubts = [
+            "" if each.ok else each.status_text,
+            each.kept_doubt and f"same values: {each.kept_doubt}",
+            one.real_gain_status(each).doubt,
+        ]
         rows.append(Row(cells(*content), status="; ".join(filter(None, doubts))))
     return Table(f"{capital(one.heading)}: the best networks with real inerters", heads, rows)
 
@@ -237,7 +241,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
 def real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
     """Gains of a network on the baseline with ideal and with real inerters, in per cent."""
     ideal = next(found.value for found in one.result.ranking if found.layout == each.network)
-    return improvement(ideal, one.baseline), improvement(each.value, one.real_baseline(each.method))
+    return improvement(ideal, one.baseline), one.real_gain(each)
 
 
 def real_table(found: StudySearch) -> Table:
@@ -247,7 +251,8 @@ def real_table(found: StudySearch) -> Table:
     units = [label_with_unit(name, parameter_unit(found.study, name)) for name in names]
     keys = ("layout", "index", "method", "network", "ideal", "same_values", "same_values_doubt", "value")
     errors = ("standard_error", "error_bound", "unit")
-    more = ("ideal_improvement_percent", "improvement_percent", *units, "at_bound", "starts", "agreed", "status")
+    gains = ("ideal_improvement_percent", "improvement_percent", "improvement_bound", "improvement_doubt")
+    more = (*gains, *units, "at_bound", "starts", "agreed", "status")
     rows = []
     for one, each in results:
         ideal = next(network.value for network in one.result.ranking if network.layout == each.network)
@@ -256,6 +261,7 @@ def real_table(found: StudySearch) -> Table:
                 cells(
                     *(each.layout, each.index, each.method, each.network, ideal, each.kept, each.kept_doubt),
                     *(each.value, each.standard_error, each.error_bound, one.result.unit, *real_gains(one, each)),
+                    *(one.real_gain_bound(each), one.real_gain_status(each).doubt),
                     *(each.parameters.get(name) for name in names),
                     bounds_text(each.active_bounds),
                     *(each.starts, each.agreed, each.status_text),

@@ -26,7 +26,7 @@ from inerter.files.study.search_parts import (
     RealResult,
     result_of,
 )
-from inerter.files.study.search_tables import front_table, networks_table, real_table
+from inerter.files.study.search_tables import front_table, improvement, networks_table, real_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.methods.error_bounds import improvement_bound
@@ -53,14 +53,23 @@ class LayoutSearch:
     baseline: float = nan
     real: tuple[RealResult, ...] = ()  # the best networks with real inerters, and the baseline by the same methods
 
-    def real_baseline(self, method: str) -> float:
-        """The index of the baseline by a method; nan if it is not known."""
-        return next((one.value for one in self.real if one.method == method and not one.network), nan)
+    def real_gain(self, each: RealResult) -> float:
+        """Gain of a network with real inerters on the baseline, by the same method [%]; nan if it is not known."""
+        base = self._real_baseline(each.method)
+        return nan if base is None else improvement(each.value, base.value)
 
     def real_gain_bound(self, each: RealResult) -> float:
-        """Largest error of the gain of a network with real inerters on the baseline, by the same method [%]."""
-        base = next((one for one in self.real if one.method == each.method and not one.network), None)
+        """Largest error of that gain [%]."""
+        base = self._real_baseline(each.method)
         return nan if base is None else improvement_bound(each.value, base.value, each.error_bound, base.error_bound)
+
+    def real_gain_status(self, each: RealResult) -> Status:
+        """Reliability of the value of the baseline in that gain."""
+        base = self._real_baseline(each.method)
+        return OK if base is None or base.ok else Status(StatusKind(base.status), f"baseline: {base.message}")
+
+    def _real_baseline(self, method: str) -> RealResult | None:
+        return next((one for one in self.real if one.method == method and not one.network), None)
 
 
 @dataclass(frozen=True, eq=False)

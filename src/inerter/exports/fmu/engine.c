@@ -83,7 +83,8 @@ typedef struct {
 
 static double gauge(double number) { return ldexp(1.0, number > 0.0 ? ilogb(number) : 0); }
 
-/* A number of twice the digits of a double, and a bound for what rounding has made of it. */
+/* A number of twice the digits of a double, and a bound for what rounding has made of it. A compiler that contracts or
+   reorders sums (-ffp-contract=fast, -ffast-math) loses the second half. */
 typedef struct {
     double high, low, error;
 } Twofold;

@@ -11,7 +11,7 @@ import numpy as np
 
 from inerter.errors import StatusKind
 from inerter.files.common.problem import Problem, at
-from inerter.files.study.limits import limits_in
+from inerter.files.study.limits import all_limits
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
@@ -42,7 +42,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
 
     def compute(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
         """Pareto front of the layout."""
-        limits = [limit for several in limits_in(study) for limit in several]
+        limits = all_limits(study)
         indices = [study.resolve_index(name, self.layout) for name in study.trade_off]
         method = study.method(str(study.optimise), threads)
         design = study.design(self.layout)

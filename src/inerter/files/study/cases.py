@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import Status, StatusKind, worst_of
-from inerter.files.study.limits import limit_results, limits_in
+from inerter.files.study.limits import all_limits, limit_results
 from inerter.files.study.parts import FAILURES, PartResult, StudyPart, run_part
 from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
 from inerter.files.study.study import Study
@@ -188,7 +188,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         "evaluations": 0,
     }
     found: Optimum | None = None
-    limits = [limit for several in limits_in(study) for limit in several]
+    limits = all_limits(study)
     searched: tuple[Status, ...] = ()  # of the search, or of the limits where there is none
     if study.optimise is not None and vehicle.free_values():
         method = study.method(study.optimise, threads)

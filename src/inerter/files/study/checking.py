@@ -15,7 +15,7 @@ from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
-from inerter.files.study.limits import limited_definitions, limits_in
+from inerter.files.study.limits import all_limits, limited_definitions
 from inerter.files.study.loading import load_study, unchosen_problems
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentences
@@ -140,7 +140,7 @@ def fixed_part(study: Study) -> Study:
 
 def _plan(study: Study, layout: str, index: str) -> SearchPlan:
     assert study.optimise is not None
-    limits = [limit for several in limits_in(study) for limit in several]
+    limits = all_limits(study)
     vehicle, method = study.design(layout), study.method(study.optimise)
     return plan_search(vehicle, study.resolve_index(index, layout), method, limits, study.seed)
 
@@ -178,7 +178,7 @@ def _check_design(study: Study, layout: str) -> None:
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
             objective_of(vehicle, study.resolve_index(name, layout), method)
-        bounds_of(vehicle, [limit for several in limits_in(study) for limit in several], method)
+        bounds_of(vehicle, all_limits(study), method)
 
 
 def study_notes(study: Study) -> list[str]:

@@ -231,6 +231,11 @@ def limits_in(study: Study) -> list[list[Limit]]:
     ]
 
 
+def all_limits(study: Study) -> list[Limit]:
+    """The limits of a study in all of its conditions, in one list."""
+    return [limit for several in limits_in(study) for limit in several]
+
+
 def each_of(study: Study, limit: StudyLimit) -> str:
     """Parts to each of which a limit applies where its index is a sum, such as "each tyre"; else empty."""
     vehicle = study.design(next(iter(study.layouts)))

@@ -9,7 +9,7 @@ from typing import Any
 
 from inerter.errors import Status, StatusKind
 from inerter.files.study.cases import Case, Outcome
-from inerter.files.study.limits import limits_in
+from inerter.files.study.limits import all_limits
 from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import best_design
@@ -172,8 +172,7 @@ class RealPart(StudyPart["RealResult"]):
         layout = str(study.baseline)
         index, design = study.resolve_index(self.index, layout), study.design(layout)
         if self.method != study.optimise and design.free_values() and linear_notes(design.mechanism()):
-            limits = [limit for several in limits_in(study) for limit in several]
-            return self._optimised(optimise(design, index, method, subject_to=limits, seed=study.seed))
+            return self._optimised(optimise(design, index, method, subject_to=all_limits(study), seed=study.seed))
         estimate = estimate_of(best_design(study, designs, layout, self.index), index, method)
         return self._result(
             value=estimate.value,

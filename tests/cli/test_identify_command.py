@@ -15,6 +15,7 @@ from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
 from inerter.cli.main import call
+from inerter.errors import IdentificationError
 from inerter.files.identification import running as identification_run
 from inerter.files.identification.loading import load_identification
 from inerter.identification import diagnosis
@@ -101,6 +102,20 @@ def test_text_says_all_in_80_columns(
     assert out.isascii()
     assert "bench-results/report.html" in err
     assert (fitted / "bench-results" / "report.html").exists()
+
+
+def test_a_doubtful_unit_is_told_before_the_fit(
+    bench: it.Record, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fit(*arguments: object, **settings: object) -> it.Fit:
+        err = capsys.readouterr().err
+        assert '--unit "time=ms"' in err
+        raise IdentificationError("begun")
+
+    monkeypatch.setattr(identification_run, "identify", fit)
+    it.write_record(replace(bench, time=1e3 * bench.time), tmp_path / "ms.csv")
+    assert call(["identify", str(tmp_path / "ms.csv"), "--model", "ball-screw", "-o", str(tmp_path / "out")]) == 2
+    assert "begun" in capsys.readouterr().err
 
 
 def test_the_elements_can_be_pasted_into_a_study(fitted: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,7 +13,7 @@ from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import uniform_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.search import basin_hopping, starts
+from inerter.identification.search import basin_hopping, search, starts
 from inerter.identification.sensors import periodic_displacement, unavoidable_residual
 
 FLYWHEEL = it.Inerter(it.free(10, 500, name="b")) | it.Friction(it.free(0, 200, name="f"))
@@ -132,6 +132,14 @@ def test_a_device_that_nobody_can_predict_has_no_parameters() -> None:
     assert not fit.status.ok
     assert not any(told for told in fit.identifiable.values())
     assert all(np.isnan(parameter.value) for parameter in fit.parameters.values())
+
+
+def test_progress_moves_with_each_point_of_a_search() -> None:
+    told: list[float] = []
+    search(problem_of(fit_test(duration=1.0), FLYWHEEL), {}, 0, 8, ((1 / 16, 2, 2), (1.0, 1, 1)), told.append)
+    assert len(told) == 8 + 2 + 1  # points, and the candidates of both stages
+    assert told == sorted(set(told))
+    assert told[-1] == pytest.approx(1.0)
 
 
 @pytest.mark.marathon

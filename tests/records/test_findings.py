@@ -71,6 +71,7 @@ FAULTS = {
     "saturation": replace(GOOD, force=np.clip(F, -30.0, 30.0)),
     "constant": replace(GOOD, displacement=np.full(T.size, 1e-3)),
     "implausible": replace(GOOD, displacement=X * 1e6),
+    "time-scale": replace(GOOD, time=T * 1e3),
     "force-reversed": replace(GOOD, force=-F),
     "force-offset": replace(GOOD, force=F + 500.0),
     "displacement-offset": replace(GOOD, displacement=X + 0.1),
@@ -87,6 +88,19 @@ def test_each_fault_is_found(kind):
     found = only(FAULTS[kind], kind)
     assert found.severity == ("error" if kind == "constant" else "warning")
     assert len(found.sentence) < 400
+
+
+def test_times_in_a_wrong_unit():
+    assert "'ms'" in only(replace(GOOD, time=T * 1e3), "time-scale").sentence  # ms that were read as s
+    assert "'s'" in only(replace(GOOD, time=T * 1e-3), "time-scale").sentence  # s that were read as ms
+
+
+def test_a_slow_test_of_the_friction_is_not_too_slow():
+    """1 mm at 0.1 Hz, as recommended for friction: 1 t would add a few percent of 10 N."""
+    time = np.arange(6000) * 5e-3
+    phase = 2 * np.pi * 0.1 * time
+    force = -10.0 * np.sign(np.sin(phase)) + np.random.default_rng(0).normal(0.0, 0.1, time.size)
+    assert "time-scale" not in kinds(Record(time, 1e-3 * np.cos(phase), force))
 
 
 def test_a_load_cell_at_its_known_range():

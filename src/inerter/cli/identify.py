@@ -22,6 +22,7 @@ from inerter.files.common.toml import check_measurements
 from inerter.files.identification.loading import IdentificationRequest, load_identification
 from inerter.files.identification.running import FIT, read, run_identification
 from inerter.files.identification.sections import RecordRequest, channel_units, gap_treatment
+from inerter.records.finding_texts import QUESTIONABLE
 from inerter.records.uncertain import Uncertain, parse_uncertain
 from inerter.report.identification import OWN, write_fit, write_identification
 from inerter.report.identification_data import identification_data
@@ -65,6 +66,10 @@ def identify(
                 readings.append(read(path, request.record, callback))
         except RecordError as error:
             raise RecordError(as_options(error.args)) from None
+    for reading in readings:
+        for finding in reading.findings:
+            if finding.kind in QUESTIONABLE:
+                say(f"{reading.used.source}: {as_options(finding.text)}")
     folder = output or Path(f"{paths[0].stem}-results")
     inputs = (*paths, *(() if config is None else (config,)))
     intent = WriteMode(folder, "identify", OWN, inputs, force=force)

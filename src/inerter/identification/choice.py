@@ -20,7 +20,7 @@ from inerter.identification.identify import solution_of
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
-from inerter.identification.solving import SolvedFit, part
+from inerter.identification.solving import SolvedFit
 from inerter.identification.statements.findings import FitFinding
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Element, Free, Network
@@ -30,6 +30,7 @@ from inerter.records.record import Record
 from inerter.simulation.event_driven import KERNELS
 from inerter.statements import Severity
 from inerter.vehicle.rig import Rig
+from inerter.work.progress import part
 from inerter.work.running import running_on
 
 Matrix = NDArray[np.float64]

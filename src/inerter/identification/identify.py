@@ -16,7 +16,7 @@ from inerter.identification.fit import Fit
 from inerter.identification.models import with_mount
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
 from inerter.identification.scales import apply_scales
-from inerter.identification.solving import SolvedFit, part, solve
+from inerter.identification.solving import SolvedFit, solve
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Network
 from inerter.networks.elements.roles import LinearRole
@@ -25,6 +25,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.validation import is_number
 from inerter.vehicle.rig import Rig
 from inerter.work.blas_threads import one_blas_thread
+from inerter.work.progress import part
 from inerter.work.running import running_on
 
 _SOLVED = 0.8  # of the work, before explanations are sought

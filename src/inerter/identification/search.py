@@ -18,7 +18,8 @@ from scipy.stats import qmc
 from inerter.formatting import format_share
 from inerter.identification.options import POINTS
 from inerter.identification.problem import FitProblem, map_problems
-from inerter.work.progress import counter, report
+from inerter.work.progress import counter, part, report
+from inerter.work.running import over_threads
 
 Matrix = NDArray[np.float64]
 Stages = tuple[tuple[float, int, int], ...]  # horizon, candidates, and evaluations of each
@@ -45,22 +46,24 @@ def search(
     """
     candidates = starts(problem, guess, seed, points)
     first = replace(problem, horizon=stages[0][0])
-    report("starting points", 0, len(candidates))
-    costs = [robust_sum(r) for r in first.residuals(candidates)]
+    work = [stages[0][0] * len(candidates) / 8, *(share * kept * runs for share, kept, runs in stages)]
+    done = [float(d) for d in np.cumsum(work) / sum(work)]
+    hear = counter("starting points", len(candidates), part(progress, 0.0, done[0]))
+    costs = []
+    for residual in over_threads(first.residual, candidates):
+        costs.append(robust_sum(residual))
+        hear(len(costs) / len(candidates))
     halfway: list[float] = []
     for stage, (horizon, kept, evaluations) in enumerate(stages):
-        part = replace(problem, horizon=horizon)
+        shorter = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
         candidates = distinct(candidates, costs)[:kept]
         what = f"search on {'all' if horizon == 1.0 else format_share(horizon)} of the information"
-        tasks = [(part, candidate) for candidate in candidates]
-        found = map_problems(
-            partial(_improve_candidate, evaluations, accuracy), tasks, progress=counter(what, len(tasks))
-        )
+        tasks = [(shorter, candidate) for candidate in candidates]
+        hear = counter(what, len(tasks), part(progress, done[stage], done[stage + 1]))
+        found = map_problems(partial(_improve_candidate, evaluations, accuracy), tasks, progress=hear)
         candidates, costs = [f[0] for f in found], [f[1] for f in found]
         halfway = sorted(costs) if horizon < 1.0 else halfway
-        if progress is not None:
-            progress((stage + 1) / len(stages))
     return candidates[int(np.argmin(costs))], halfway
 
 

@@ -29,12 +29,13 @@ from inerter.identification.sticking import Adhesion, profiles_at_rest, with_adh
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
-from inerter.work.progress import report
+from inerter.work.progress import part, report
 
 Matrix = NDArray[np.float64]
 Progress = Callable[[float], None]
 _ROUGH = 0.003  # of the r.m.s. force: assumed error until it is known
 _ROUNDS = 3
+_PARTS = ((0.0, 0.6), (0.6, 0.8), (0.8, 1.0))  # of a search that is repeated at most twice, mostly not at all
 _FINE, _POOR = 2.0, 20.0  # whitened residual (90th percentile) that requires no further search, and always does
 _FAIR = 1.5  # between them: limit over that of sensor noise
 _SAME = 1e-3  # relative difference of the costs of two searches with the same result
@@ -137,8 +138,7 @@ def _search_thoroughly(
     kept = np.concatenate([e.kept for e in problem.experiments])
     found: list[tuple[float, Matrix, list[float]]] = []
     for attempt, (stages, points) in enumerate(((QUICK, starts), (THOROUGH, starts), (THOROUGH, 2 * starts))):
-        begun, ended = attempt / 3.0, (attempt + 1) / 3.0
-        point, costs = search(problem, guess, seed + attempt, points, stages, part(progress, begun, ended))
+        point, costs = search(problem, guess, seed + attempt, points, stages, part(progress, *_PARTS[attempt]))
         if stages is THOROUGH:
             point = basin_hopping(problem, point, seed)
         residual = problem.residual(point)
@@ -215,7 +215,3 @@ def _remove_bias(
         return optimum, list(found)
     by = point - optimum.point
     return replace(optimum, point=point), [p.shift(float(d)) for p, d in zip(found, by, strict=True)]
-
-
-def part(progress: Callable[[float], None] | None, first: float, last: float) -> Callable[[float], None] | None:
-    return None if progress is None else lambda done: progress(first + (last - first) * done)

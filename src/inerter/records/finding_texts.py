@@ -42,6 +42,7 @@ class RecordFinding(StrEnum):
     CUT = "cut"
     CONSTANT = "constant"
     IMPLAUSIBLE = "implausible"
+    TIME_SCALE = "time-scale"
     SATURATION = "saturation"
     DISPLACEMENT_STEPS = "displacement-steps"
     FORCE_STEPS = "force-steps"
@@ -66,6 +67,9 @@ class RecordFinding(StrEnum):
     def text(self, finding: Finding) -> Text:
         """The parts of the sentence of such a finding."""
         return _TEXTS[self](finding)
+
+
+QUESTIONABLE = (RecordFinding.IMPLAUSIBLE, RecordFinding.TIME_SCALE)  # units, which a user may correct before a fit
 
 
 def _format_sampling(f: Finding) -> str:
@@ -198,6 +202,22 @@ def _constant_channel_text(f: Finding) -> Text:
 def _implausible_amplitude_text(f: Finding) -> Text:
     size = format_quantity(f.numbers["amplitude"], CHANNELS[f.about])
     return (f"The {f.about} has an implausible amplitude of {size}. Check its unit.",)
+
+
+def _time_scale_text(f: Finding) -> Text:
+    n = f.numbers
+    motion = f"{_format_sampling(f)}, with an acceleration of {format_quantity(n['acceleration'], 'm/s^2', 3)} (r.m.s.)"
+    if n["inertial"] is None:
+        return (
+            f"The motion is implausibly fast: {motion}. Check the unit of the times, such as ",
+            *(Remedy(Action.UNIT, ("time", "s")), "."),
+        )
+    return (
+        f"The motion is implausibly slow: {motion}, with which even 1 t adds only "
+        f"{format_quantity(n['inertial'], 'N', 3)} to the force. Check the unit of the times, such as ",
+        *(Remedy(Action.UNIT, ("time", "ms")), "."),
+        " If it is right, the record shows friction and stiffness only, and a fit may take hours.",
+    )
 
 
 def _saturation_text(f: Finding) -> Text:
@@ -337,6 +357,7 @@ _TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
     RecordFinding.CUT: _truncated_file_text,
     RecordFinding.CONSTANT: _constant_channel_text,
     RecordFinding.IMPLAUSIBLE: _implausible_amplitude_text,
+    RecordFinding.TIME_SCALE: _time_scale_text,
     RecordFinding.SATURATION: _saturation_text,
     RecordFinding.DISPLACEMENT_STEPS: _resolution_text,
     RecordFinding.FORCE_STEPS: _resolution_text,

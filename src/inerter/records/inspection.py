@@ -25,6 +25,8 @@ Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
 _FOLDED = 0.8  # of half the sampling rate: motion up to there may go on beyond
 HUM = (50.0, 60.0)  # Hz of the mains
+_FASTEST = 1e4  # m/s^2 r.m.s., above which times are more often in a wrong unit
+_INERTANCE, _LEAST = 1e3, 1e-3  # kg that give less than this share of the force: the same, of too slow a motion
 PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more often a wrong unit than a large rig
 
 
@@ -53,6 +55,7 @@ def findings(record: Record) -> list[Finding]:
 def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
+        *_time_scale(record, motion),
         *_undersampling(record, motion),
         *_swapped_columns(record),
         *(_hum(record, motion) or _line(record, motion)),
@@ -162,6 +165,22 @@ def _implausible_sizes(record: Record) -> list[Finding]:
         if size > most:
             result.append(Finding(RecordFinding.IMPLAUSIBLE, Severity.WARNING, role, {"amplitude": size}))
     return result
+
+
+def _time_scale(record: Record, motion: Motion) -> list[Finding]:
+    """Accelerations that a wrong unit of the times explains better than a test of an inertance."""
+    acceleration = float(np.std(motion.acceleration))
+    slow = _INERTANCE * acceleration < _LEAST * float(np.std(record.force))
+    if not slow and acceleration <= _FASTEST:
+        return []
+    numbers = {
+        "interval": record.interval,
+        "samples": float(record.time.size),
+        "duration": record.duration,
+        "acceleration": acceleration,
+        "inertial": _INERTANCE * acceleration if slow else None,
+    }
+    return [Finding(RecordFinding.TIME_SCALE, Severity.WARNING, "time", numbers)]
 
 
 def _saturation(record: Record) -> list[Finding]:

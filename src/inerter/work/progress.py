@@ -208,10 +208,21 @@ def report(what: str, done: int = 0, total: int = 0, *, best: float | None = Non
         listener.tell(ProgressStep(what, done, total, best, within=_WITHIN.get(), share=part))
 
 
-def counter(what: str, total: int) -> Callable[[float], None]:
-    """A function that reports the completed part of `total`; zero is reported at once."""
+def counter(what: str, total: int, also: Callable[[float], None] | None = None) -> Callable[[float], None]:
+    """A function that reports the completed part of `total`, and passes it on; zero is reported at once."""
     report(what, 0, total)
-    return lambda part: report(what, round(part * total), total)
+
+    def take(done: float) -> None:
+        report(what, round(done * total), total)
+        if also is not None:
+            also(done)
+
+    return take
+
+
+def part(progress: Callable[[float], None] | None, first: float, last: float) -> Callable[[float], None] | None:
+    """A callback for work that takes `progress` from `first` to `last`."""
+    return None if progress is None else lambda done: progress(first + (last - first) * done)
 
 
 def count_evaluation() -> None:

@@ -6,13 +6,15 @@ from quadrature import h2_by_quadrature
 
 from inerter import Filter
 from inerter.kernels import modal
+from inerter.methods.modal_norm import delay_poles
+from inerter.norms.delay import transfer
 from inerter.systems.autocorrelation import autocorrelation
 
 BAND, LOW = Filter([5.0, 0.0], [1.0, 5.0, 40.0]), Filter([2.0, 8.0], [1.0, 4.0, 9.0])
 FEED = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, -0.2]])  # direct terms of the output behind the filter
 
 
-def random_system(rng, n, delays, filters):
+def random_system(rng, n, delays, filters, order=None):
     """A descriptor of a system that decays, affine in two values, and the matrices at any values."""
     m, o = len(delays), len(filters)
     S0 = rng.normal(size=(n, n))
@@ -31,23 +33,25 @@ def random_system(rng, n, delays, filters):
         np.array(delays), np.arange(o), np.cumsum([0, *(one.poles.size for one in noises)]),
         np.concatenate([one.poles for one in noises]), np.concatenate([one.residues for one in noises]),
         np.concatenate([one.errors for one in noises]), np.array([one.direct for one in noises]),
+        delay_poles(order),
     )  # fmt: skip
     return descriptor, (np.ascontiguousarray(row), np.zeros((0, 0))), noise
 
 
-def by_quadrature(descriptor, delays, filters, p):
-    """Norms of all outputs from the frequency response of the matrices and of the filters."""
+def by_quadrature(descriptor, delays, filters, p, order=None):
+    """Norms of all outputs from the frequency response of the matrices and of the filters, and of an approximant."""
     matrices = [part[0] + np.tensordot(p, part[1:], 1) if part.ndim == 3 else part for part in descriptor]
     (_, A, B, _, _, _, _, C, D), unit = matrices, np.eye(descriptor[3].shape[0])
 
     def norm(output, one):
         def response(omega):
             gains = np.linalg.solve(1j * omega[:, None, None] * unit - A, np.broadcast_to(B, (omega.size, *B.shape)))
+            late = 1.0 if order is None else np.stack([transfer(omega, delay, order) for delay in delays], axis=1)
             if one is None:
-                return C[output] @ gains
-            return (C[output] @ gains + D[output]) * one.response(omega)[:, None]
+                return C[output] @ gains * late
+            return (C[output] @ gains + D[output]) * one.response(omega)[:, None] * late
 
-        return h2_by_quadrature(response, delays, 100.0)
+        return h2_by_quadrature(response, delays if order is None else np.zeros(len(delays)), 100.0)
 
     return [norm(output, one) for output, one in enumerate(filters)]
 
@@ -59,17 +63,18 @@ CASES = [
     (4, (0.0, 0.0, 0.3), (BAND, LOW)),
     (7, (0.0, 0.2, 0.7), (None, LOW)),
 ]
+APPROXIMATED = [(6, (0.0, 0.0, 0.3), (BAND, LOW), 5), (7, (0.0, 0.7), (None, LOW), 4)]
 
 
-@pytest.mark.parametrize(("n", "delays", "filters"), CASES)
-def test_norms_and_gradients_are_those_of_the_integral(n, delays, filters):
+@pytest.mark.parametrize(("n", "delays", "filters", "order"), [*((*case, None) for case in CASES), *APPROXIMATED])
+def test_norms_and_gradients_are_those_of_the_integral(n, delays, filters, order):
     rng = np.random.default_rng(n)
-    descriptor, extended, noise = random_system(rng, n, delays, filters)
+    descriptor, extended, noise = random_system(rng, n, delays, filters, order)
     point, weights = rng.uniform(0.5, 1.5, 2), np.array([1.0, 0.7])
     norms, gradients, errors = modal.norms_by_modes(point[None], descriptor, extended, noise, weights)
     assert errors[0] < 1e-10
     assert norms[0] == pytest.approx(
-        by_quadrature(descriptor, delays, filters, point), rel=2e-6 if None in filters else 1e-8
+        by_quadrature(descriptor, delays, filters, point, order), rel=2e-6 if None in filters else 1e-8
     )
     for i in range(2):
 
@@ -82,10 +87,10 @@ def test_norms_and_gradients_are_those_of_the_integral(n, delays, filters):
         assert gradients[0, i] == pytest.approx(slope, rel=1e-9, abs=1e-10 * float(norms[0] @ weights))
 
 
-def test_compiled_code_gives_the_numbers_of_plain_python():
-    n, delays, filters = CASES[4]
+@pytest.mark.parametrize("case", [CASES[4], APPROXIMATED[1]])
+def test_compiled_code_gives_the_numbers_of_plain_python(case):
     rng = np.random.default_rng(0)
-    given = random_system(rng, n, delays, filters)
+    given = random_system(rng, *case)
     points, weights = rng.uniform(0.5, 1.5, (3, 2)), np.ones(2)
     found = modal.norms_by_modes(points, *given, weights)
     plain = modal.norms_by_modes.function(points, *given, weights)

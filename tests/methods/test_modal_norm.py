@@ -29,6 +29,8 @@ FULL = it.FullCar(
 QUESTIONS = {
     "half J3": (HALF, it.TyreLoad(ROAD)),
     "half Wk": (HALF, it.RideComfort(ROAD, weighting="Wk")),
+    "half J3 with an approximant": (HALF, it.TyreLoad(ROAD), "paper2008"),
+    "half Wk with an approximant": (HALF, it.RideComfort(ROAD, weighting="Wk"), "paper2008"),
     "full J3": (FULL, it.TyreLoad(TWO_TRACKS)),
     "full Wk": (FULL, it.RideComfort(TWO_TRACKS, weighting="Wk")),
 }
@@ -41,8 +43,8 @@ def draw(car, count, seed):
 
 @pytest.mark.parametrize("name", QUESTIONS)
 def test_they_are_the_norms_with_states_for_filters(name):
-    car, index = QUESTIONS[name]
-    objective, points = it.Norm().objective(car, index), draw(car, 60, len(name))
+    car, index, *conventions = QUESTIONS[name]
+    objective, points = it.Norm(*conventions).objective(car, index), draw(car, 60, len(name))
     for seen, one in objective.per_source_definitions:
         own, weights = np.ascontiguousarray(points[:, objective._columns(one)]), np.ones(int(seen.sum()))
         norms, gradients, errors = one._by_modes(own, weights)
@@ -55,10 +57,13 @@ def test_they_are_the_norms_with_states_for_filters(name):
         assert np.all(np.abs(gradients[sure] - slopes[sure]) <= 1e-8 * scale)
 
 
-@pytest.mark.parametrize("name", sampled(["half J3", "half Wk"], ["half J3"]))
+LIGHT = ["half J3", "half Wk", "half J3 with an approximant", "half Wk with an approximant"]
+
+
+@pytest.mark.parametrize("name", sampled(LIGHT, [LIGHT[2]]))
 def test_they_are_right_to_a_billionth_where_damping_is_light(name):
-    car, index = QUESTIONS[name]
-    objective, points = it.Norm().objective(car, index), draw(car, 12, 7)
+    car, index, *conventions = QUESTIONS[name]
+    objective, points = it.Norm(*conventions).objective(car, index), draw(car, 12, 7)
     points[:, [i for i, n in enumerate(car.free_values()) if n[0] in "cd"]] *= 1e-2
     norms, _, errors = objective._by_modes(points, np.empty(0))
     known = np.flatnonzero(np.isfinite(errors))
@@ -76,8 +81,14 @@ def test_a_filter_behind_isotropic_tracks_is_not_lost():
 
 
 def test_where_modes_cannot_serve_covariances_do():
-    objective = it.Norm(conventions="paper2008").objective(HALF, it.TyreLoad(ROAD))
-    assert modal_arguments(objective.problem) is None  # an approximant of the delay
+    struts = tuple(it.Strut(f"s{i}", strut(i), {f"body{i}": 1.0}, {f"wheel{i}": 1.0}) for i in range(3))
+    masses = [it.Coordinate(f"{name}{i}", mass) for i in range(3) for name, mass in (("body", 300.0), ("wheel", 40.0))]
+    tyres = tuple(it.Tyre(f"t{i}", Spring(2e5), {f"wheel{i}": 1.0}, f"r{i}") for i in range(3))
+    roads = tuple(it.RoadInput(f"r{i}", distance=float(i)) for i in range(3))
+    three = it.Mechanism(tuple(masses), struts, tyres, roads)
+    index = it.RandomResponse({f"body{i}_acceleration": 1.0 for i in range(3)}, ROAD)
+    assert modal_arguments(it.Norm().objective(three, index).problem) is not None
+    assert modal_arguments(it.Norm("paper2008").objective(three, index).problem) is None  # a chain of approximants
     twice = it.Filter([1.0], [1.0, 2.0, 1.0])
     problem = it.Norm().objective(HALF, it.TyreLoad(ROAD)).problem
     definition = dataclasses.replace(problem.definition, filter=(twice, twice))

@@ -7,9 +7,10 @@ output c x + sum_j D_j w(t - tau_j) is
     c P c' + 2 sum_j D_j c n_j + sum_ij D_i D_j phi(tau_i - tau_j),    A P + P A' + sum_j (n_j b_j' + b_j n_j') = 0,
     n_j = sum_i theta_ij(A) b_i,    theta_ij(s) = int_0^inf phi(t - tau_j + tau_i) exp(s t) dt.
 
-In modes, A = V diag(lambda) V^-1, each of these is a closed form. The remainder of the modes, E = V^-1 (A V - V
-diag(lambda)) with A before rounding, is computed in double-double. It corrects the mean squares at first order, and
-these are known where that is small. Elsewhere `inerter.kernels.h2` has them, with states for filters.
+An approximant D(s T) of a delay, in place of exp(-s T), passes all frequencies alike; D(-s T) then takes the place of
+exp(s T) in theta. In modes, A = V diag(lambda) V^-1, each of these is a closed form. The remainder of the modes,
+E = V^-1 (A V - V diag(lambda)) with A before rounding, is computed in double-double. It corrects the mean squares at
+first order, and these are known where that is small. Elsewhere `inerter.kernels.h2` has them, with states for filters.
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ TO_MODES = (0.5 + 0j, -0.5j, 0.5 + 0j, 0.5j)  # the inverse of that
 TO_REAL_TRANSPOSED = (1.0 + 0j, 1j, 1.0 + 0j, -1j)
 TO_MODES_TRANSPOSED = (0.5 + 0j, 0.5 + 0j, -0.5j, 0.5j)
 
-NOISE = "Tuple((float64[::1], int64[::1], int64[::1], complex128[::1], complex128[::1], float64[::1], float64[::1]))"
+_FIELDS = "float64[::1], int64[::1], int64[::1], complex128[::1], complex128[::1], float64[::1], float64[::1]"
+NOISE = f"Tuple(({_FIELDS}, complex128[::1]))"
 
 
 class FilteredNoise(NamedTuple):
@@ -53,6 +55,7 @@ class FilteredNoise(NamedTuple):
     residues: Array  # r_f
     errors: Array  # relative rounding errors of r_f / (m_f + s)
     direct: Array  # (groups,) d
+    delay_poles: Array  # q of D(x), the product of (q + x) / (q - x); none where delays are exact
 
 
 class VehicleModes(NamedTuple):
@@ -90,7 +93,7 @@ class ModalRoom(NamedTuple):
     ahead_change: Array  # (pairs, n, n) divided differences of theta
     behind_change: Array
     error: Array  # (pairs, n) bounds of the rounding errors of both
-    exponent: Array  # (pairs, poles) exp(m_f (tau_j - tau_i))
+    exponent: Array  # (pairs, poles) exp(m_f (tau_j - tau_i)), or its approximant
     scale: Array  # (2, n) units of the states and their inverses
     eigen: Array  # (2, n) parts of the eigenvalues
     pivots: Array
@@ -326,13 +329,72 @@ def exponential_quotients(z: complex) -> tuple[complex, complex]:
 
 
 @part(borrowing=True)
+def delay_at(noise: Array, time: float, s: complex) -> tuple[complex, complex, float]:
+    """exp(s time) or its approximant, its derivative over s, and what multiplies the rounding error of a factor."""
+    if noise.delay_poles.size == 0 or time == 0.0:
+        power = np.exp(s * time)
+        return power, time * power, 1.0 + one_norm(s) * time  # rounding of s * time turns the phase
+    power, rise, error = 1.0 + 0j, 0j, 1.0
+    for pole in noise.delay_poles:
+        factor, slope, unsure = delay_factor(s * time, pole)
+        error = error * one_norm(factor) + one_norm(power) * unsure
+        rise = rise * factor + power * time * slope
+        power *= factor
+    return power, rise, error
+
+
+@part(borrowing=True)
+def delay_factor(x: complex, pole: complex) -> tuple[complex, complex, float]:
+    """The factor (q - x) / (q + x) of an approximant of exp(x), its derivative, and a factor of its rounding error."""
+    inverse = reciprocal(pole + x)
+    turn = (one_norm(pole) + one_norm(x)) * one_norm(inverse)
+    return (pole - x) * inverse, -2.0 * pole * inverse * inverse, turn * (1.0 + turn)
+
+
+@part(borrowing=True)
+def delay_quotient(
+    noise: Array, time: float, s: complex, here: tuple[complex, complex, float], m: complex, decay: complex
+) -> tuple[complex, complex, float]:
+    """Divided difference of `delay_at` between s and m, its derivative over s, and a factor of its rounding error.
+
+    `here` is what that has at s, `decay` its first value at m. The quotient of a product of factors f is that of all
+    but one times f(m), and all but one at s times the quotient of f.
+    """
+    if noise.delay_poles.size == 0:
+        apart, (power, rise, turns) = s - m, here
+        if one_norm(apart) * time > _SERIES:
+            over = reciprocal(apart)
+            between = (power - decay) * over
+            rising = (rise - between) * over
+        else:
+            between, rising = exponential_quotients(apart * time)
+            between, rising = decay * time * between, decay * time * time * rising
+        return between, rising, turns * one_norm(between)
+    power, rise, error, between, rising, unsure = 1.0 + 0j, 0j, 1.0, 0j, 0j, 0.0
+    for pole in noise.delay_poles:
+        factor, slope, turn = delay_factor(s * time, pole)
+        other, _, other_turn = delay_factor(m * time, pole)
+        inverse = reciprocal(pole + s * time)
+        quotient = -2.0 * time * pole * inverse * reciprocal(pole + m * time)
+        unsure = unsure * one_norm(other) + one_norm(between) * other_turn
+        unsure += one_norm(quotient) * (error + one_norm(power) * (turn + other_turn))
+        rising = rising * other + rise * quotient - power * quotient * time * inverse
+        between = between * other + power * quotient
+        error = error * one_norm(factor) + one_norm(power) * turn
+        rise = rise * factor + power * time * slope
+        power *= factor
+    return between, rising, unsure
+
+
+@part(borrowing=True)
 def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) -> Any:
     """Theta for a delay and for its negative, their derivatives over s, and a bound of the rounding errors of both.
 
-    `decay` has all exp(m_f time).
+    `decay` has all exp(m_f time), or their approximants.
     """
     starts, rates, residues, direct = noise.starts, noise.poles, noise.residues, noise.direct
-    power, turns = np.exp(s * time), 1.0 + one_norm(s) * time  # rounding of s * time turns the phase
+    here = delay_at(noise, time, s)
+    power, rise, turns = here
     ahead, behind, ahead_slope, behind_slope, error = 0j, 0j, 0j, 0j, 0.0
     for f in range(starts[group], starts[group + 1]):
         inverse = reciprocal(rates[f] + s)
@@ -343,26 +405,19 @@ def theta_at(noise: Array, group: int, time: float, decay: Array, s: complex) ->
             behind_slope += steep
             error += noise.errors[f] * one_norm(term)
             continue
-        apart = s - rates[f]
-        if one_norm(apart) * time > _SERIES:
-            over = reciprocal(apart)
-            between = (power - decay[f]) * over
-            rising = (time * power - between) * over
-        else:
-            between, rising = exponential_quotients(apart * time)
-            between, rising = decay[f] * time * between, decay[f] * time * time * rising
+        between, rising, unsure = delay_quotient(noise, time, s, here, rates[f], decay[f])
         ahead += residues[f] * between - power * term
-        ahead_slope += residues[f] * rising + power * (steep - time * term)
+        ahead_slope += residues[f] * rising + power * steep - rise * term
         behind -= decay[f] * term
         behind_slope += decay[f] * steep
-        error += noise.errors[f] * turns * (one_norm(residues[f]) * one_norm(between) + one_norm(term))
+        error += noise.errors[f] * (one_norm(residues[f]) * unsure + turns * one_norm(term))
     if time == 0.0:
         behind += 0.5 * direct[group]
         ahead, ahead_slope = behind, behind_slope
     else:
         ahead += direct[group] * power
-        ahead_slope += direct[group] * time * power
-        error += turns * _FACTORS * direct[group] * one_norm(power)
+        ahead_slope += direct[group] * rise
+        error += turns * _FACTORS * direct[group] * (one_norm(power) if noise.delay_poles.size == 0 else 1.0)
     return ahead, behind, ahead_slope, behind_slope, error + _FACTORS * (one_norm(ahead) + one_norm(behind))
 
 
@@ -399,7 +454,7 @@ def fill_exponents(noise: Array, room: Array) -> None:
         for j in range(i + 1, delays.size):
             row += 1
             for f in range(rates.size):
-                room.exponent[row, f] = np.exp(rates[f] * (delays[j] - delays[i]))
+                room.exponent[row, f] = delay_at(noise, delays[j] - delays[i], rates[f])[0]
 
 
 @part()
@@ -540,7 +595,7 @@ def autocorrelation(noise: Array, group: int, time: float) -> tuple[float, float
     starts, rates, residues = noise.starts, noise.poles, noise.residues
     value, size = 0.0, 0.0
     for f in range(starts[group], starts[group + 1]):
-        term = residues[f] * np.exp(rates[f] * abs(time))
+        term = residues[f] * delay_at(noise, abs(time), rates[f])[0]
         value += term.real
         size += noise.errors[f] * one_norm(term)
     return value, size
@@ -724,7 +779,7 @@ def norms_by_modes(points: Array, descriptor: Array, extended: Array, given: Arr
     and norms and gradient are nan. Behind a filter with d > 0, D counts as zero: else the norm would be infinite.
     """
     n, m, o = descriptor[1].shape[2], descriptor[2].shape[2], descriptor[7].shape[1]
-    noise = FilteredNoise(given[0], given[1], given[2], given[3], given[4], given[5], given[6])
+    noise = FilteredNoise(*given)
     groups, direct = noise.groups, noise.direct
     closing, room = extended_space(descriptor), modal_room(n, m, o, noise.poles.size)
     slopes = Slopes(

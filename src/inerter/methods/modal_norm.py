@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from inerter.methods.linear import LinearProblem
+from inerter.norms.delay import pade
 from inerter.signals.coherence import Coherence, Excess, isotropic_exponentials
 from inerter.systems.autocorrelation import Autocorrelation, autocorrelation, pole_errors
 from inerter.systems.descriptor import Descriptor, describe
@@ -34,13 +35,15 @@ def stacks_of(descriptor: Descriptor) -> tuple[tuple[Any, ...], tuple[Any, Any]]
 def modal_arguments(problem: LinearProblem) -> tuple[Any, Any, Any] | None:
     """Descriptor without states of filters, the same extended, and the noise; None if modes cannot serve.
 
-    That is so for approximants of delays, for inputs with different filters, for filters without partial fractions,
-    where a state drifts, and where tracks with an isotropic coherence have no half model, or a filter more.
+    That is so for approximants of more than one delay, for inputs with different filters, for filters without partial
+    fractions, where a state drifts, and where tracks with an isotropic coherence have no half model, or a filter more.
     """
     kinds = {(path.filter, path.excess, path.displacement) for path in problem.paths}
-    if problem.pade_order is not None or len(set(problem.sources)) != 1 or len(kinds) != 1:
+    if len(set(problem.sources)) != 1 or len(kinds) != 1:
         return None
     ((shape, excess, displacement),) = kinds
+    if problem.pade_order is not None and (excess is not None or len(set(problem.delays.tolist())) > 2):
+        return None  # later arrivals would be delayed by products of approximants
     if excess is not None and shape != _isotropic_filter(excess, displacement):
         return None
     found = _without_states(problem, shape)
@@ -61,8 +64,14 @@ def modal_arguments(problem: LinearProblem) -> tuple[Any, Any, Any] | None:
         np.concatenate([one.residues for one in known]),
         np.concatenate([one.errors for one in known]),
         np.array([one.direct for one in known]),
+        delay_poles(problem.pade_order),
     )
     return *stacks_of(descriptor), noise
+
+
+def delay_poles(pade_order: int | None) -> Any:
+    """Poles of the approximant of a delay; none where delays are exact."""
+    return np.zeros(0, dtype=complex) if pade_order is None else pade(pade_order).poles
 
 
 def _isotropic_filter(excess: Excess, displacement: bool) -> Filter | None:

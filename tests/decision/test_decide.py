@@ -238,3 +238,19 @@ def test_sentences(designs: list[DesignResult], answer: VerdictKind, sentence: s
 
     told = decide(designs, over).verdict
     assert (told.answer, told.sentence) == (answer, sentence)
+
+
+def test_what_gets_worse_is_said_once_for_equally_good_designs() -> None:
+    def worse(*percent: float) -> tuple[IndexResult, ...]:
+        titles = [("J3", "dynamic tyre load"), ("J5", "dynamic load carrying")]
+        pairs = zip(titles, percent, strict=False)
+        return tuple(IndexResult(*of, "N", 1.0, improvement=Improvement(by)) for of, by in pairs)
+
+    more = [("S2", worse(-4.0, -2.0)), ("S3", worse(-4.0, -3.0)), ("S4", worse(-4.0))]
+    winners = [design(name, 2.5, by=Improvement(10.0), others=others) for name, others in more]
+    caveats = decide([BASE, *winners], lambda one, other: Improvement(0.0, is_tie=True)).verdict.caveats
+    assert [one.sentence for one in caveats if one.kind is CaveatKind.WORSE] == [
+        "Dynamic tyre load (J3) gets worse: S2, S3 and S4 are 4.0 % worse than S1.",
+        "Dynamic load carrying (J5) gets worse: S2 is 2.0 % worse than S1.",
+        "Dynamic load carrying (J5) gets worse: S3 is 3.0 % worse than S1.",
+    ]

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
+from typing import TypeVar
 
 from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
 from inerter.errors import StatusKind
@@ -13,6 +14,7 @@ from inerter.formatting import capital, format_list
 from inerter.statements import Severity, Statement
 
 Over = Callable[[DesignResult, DesignResult], Improvement | None]
+Words = TypeVar("Words", bound=Hashable)
 _MOST_NAMES = 3  # of values, in a sentence
 
 
@@ -96,12 +98,20 @@ def unchosen_clause(designs: Sequence[DesignResult]) -> str:
 
 def _worse(contest: Contest) -> Iterator[Caveat]:
     base = contest.baseline
-    for design in contest.winners:
-        for other in design.others if base is not None and design is not base else ():
-            by = other.improvement
-            if base is not None and by is not None and not by.is_equal and by.percent < 0.0:
-                text = f"{capital(other.words)} gets worse: {design.name} is {by.words} than {base.name}."
-                yield Caveat(CaveatKind.WORSE, text)
+    if base is None:
+        return
+    worse = _names_by(
+        (one for one in contest.winners if one is not base),
+        lambda one: [
+            (capital(other.words), by.words)
+            for other in one.others
+            if (by := other.improvement) is not None and not by.is_equal and by.percent < 0.0
+        ],
+    )
+    for (index, size), names in worse.items():
+        be = "is" if len(names) == 1 else "are"
+        text = f"{index} gets worse: {format_list(names)} {be} {size} than {base.name}."
+        yield Caveat(CaveatKind.WORSE, text)
 
 
 def _statuses(contest: Contest) -> Iterator[Caveat]:
@@ -195,8 +205,10 @@ def _unchosen(contest: Contest) -> Iterator[Caveat]:
         yield Caveat(CaveatKind.UNCHOSEN, f"{unchosen_clause(designs)}; {end}.")
 
 
-def _names_by(designs: Iterable[DesignResult], words: Callable[[DesignResult], Iterable[str]]) -> dict[str, list[str]]:
-    found: dict[str, list[str]] = {}
+def _names_by(
+    designs: Iterable[DesignResult], words: Callable[[DesignResult], Iterable[Words]]
+) -> dict[Words, list[str]]:
+    found: dict[Words, list[str]] = {}
     for design in designs:
         for what in words(design):
             found.setdefault(what, []).append(design.name)

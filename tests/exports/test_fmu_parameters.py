@@ -255,6 +255,5 @@ def test_masses_that_no_digit_of_an_inertance_shows_are_refused(
     master.fmu.reset()
     with pytest.raises(Exception, match="failed with status"):
         master.start({"sprung_mass": 1e-12, "unsprung_mass": 1e-12, "b": 1e15})
-    assert master.messages == [
-        "no motion follows from these parameters: the equations are singular, or nearly so in double precision"
-    ]
+    (message,) = master.messages
+    assert message.endswith(": the equations are singular, or nearly so in twice the digits of a double")

@@ -38,7 +38,7 @@ static Variable variable(unsigned reference)
 static Status answer(Model *model, int is_made)
 {
     if (is_made) return OK;
-    tell(model, ERROR, "no motion follows from these parameters: the equations are singular, or nearly so in double precision");
+    tell(model, ERROR, "no motion follows from these parameters: the equations are singular, or nearly so in twice the digits of a double");
     return ERROR;
 }
 

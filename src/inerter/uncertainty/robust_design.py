@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, ErrorSource, Status, StatusKind, worst_of
+from inerter.errors import DesignError, ErrorSource, worst_of
 from inerter.formatting import format_share
 from inerter.indices.definition import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
@@ -32,7 +32,13 @@ from inerter.uncertainty.distributions import (
     source_values,
     with_free_scatter,
 )
-from inerter.uncertainty.tolerance import evaluate_sample, quantile_error, rank_weights, with_scatter_of_values
+from inerter.uncertainty.tolerance import (
+    evaluate_sample,
+    quantile_error,
+    rank_weights,
+    sample_status,
+    with_scatter_of_values,
+)
 from inerter.validation import is_number
 from inerter.vehicle.vehicle import Vehicle
 
@@ -102,9 +108,7 @@ class Quantile(OfIndex):
     def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
         """The quantile for a vehicle without free values, with its standard error and interval."""
         values = evaluate_sample(vehicle, self.index, method, self.scatter, self.factors)
-        if not np.all(np.isfinite(values)):
-            lost = int(np.sum(~np.isfinite(values)))
-            status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs of the sample have no reliable value")
+        if not (status := sample_status(values)).ok:
             return Estimate(np.nan, self.unit, status)
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
         here = estimate_of(vehicle, self.index, method)

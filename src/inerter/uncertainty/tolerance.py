@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import DesignError, Status, StatusKind, worst_of
+from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.methods.averages import CONFIDENCE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.conditions import OverConditions
@@ -182,10 +182,10 @@ def _analyse(
     values = evaluate_sample(design, index, method, scatter, np.vstack([a, b, *crossed, corners]))
     both, mixed_values = values[: 2 * samples], values[2 * samples : (2 + count) * samples].reshape(count, samples)
     extreme, factors = np.append(both, values[(2 + count) * samples :]), np.vstack([a, b, corners])
-    status, known = here.status, bool(np.all(np.isfinite(values)))
-    if not known and (here.status.ok or np.isfinite(here.value)):
-        lost = int(np.sum(~np.isfinite(values)))
-        status = Status(StatusKind.FAILED, f"{lost} of {values.size} designs of the sample have no reliable value")
+    sampled = sample_status(values)
+    status, known = here.status, sampled.ok
+    if not known and (status.ok or np.isfinite(here.value)):
+        status = sampled
     names = scatter.names
     same = np.all(mixed_values == both[:samples], axis=1)
     idle = [name for name, is_same in zip(names, same.tolist(), strict=True) if is_same]
@@ -279,6 +279,13 @@ def evaluate_sample(design: Vehicle, index: IndexLike, method: Method, scatter: 
         return evaluate_many(with_free_scatter(design, scatter), index, points, method)[:, 0]
     rows = [dict(zip(own, row, strict=True)) for row in table.tolist()]
     return np.array(map_items(partial(_value, design, index, method), rows))
+
+
+def sample_status(values: Array) -> Status:
+    """Status of what needs all values of a sample: failed where one of them is not finite."""
+    lost = int(np.sum(~np.isfinite(values)))
+    message = f"{lost} of {values.size} designs of the sample have no reliable value"
+    return Status(StatusKind.FAILED, message) if lost else OK
 
 
 def _value(design: Vehicle, index: IndexLike, method: Method, values: Mapping[str, float]) -> float:

@@ -17,7 +17,6 @@ from inerter.errors import DesignError
 from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.place import element_at, place_of
-from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import format_quantity, shown_decimals
 from inerter.methods.compare import Comparison, compare
@@ -151,7 +150,7 @@ def _numbers(design: Design) -> dict[str, str]:
     """Numbers of a design's elements and vehicle as texts with units, by their description."""
     used = {name for name, layouts in elements_used(design.fixed_study).items() if design.layout in layouts}
     found = {}
-    for label, number in places(design.fixed_study).items():
+    for label, number in design.fixed_study.numbers.items():
         place = place_of(label)
         if isinstance(number.value, int | float) and (place.section == _VEHICLE or element_at(place) in used):
             found[number.words] = format_quantity(number.value, number.unit, digits=_DIGITS)

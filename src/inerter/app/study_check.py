@@ -11,7 +11,6 @@ from inerter.files.common.problem import EntryError
 from inerter.files.common.problems import FileError
 from inerter.files.study.checking import check_study, study_notes
 from inerter.files.study.place import place_of
-from inerter.files.study.places import places
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import number_of
 from inerter.formatting import format_quantity
@@ -59,7 +58,7 @@ def _valid_part(document: object) -> tuple[Study | None, list[dict[str, Any]]]:
 def _places(study: Study) -> list[dict[str, Any]]:
     """Numbers of the study that can be swept."""
     found = []
-    for label, number in places(study).items():
+    for label, number in study.numbers.items():
         try:
             value = number_of(study, place_of(label)).value
         except EntryError:  # it is free, or makes no difference

@@ -14,7 +14,6 @@ from inerter.figures.labels import infeasible
 from inerter.files.common.vehicles import vehicle_words
 from inerter.files.study.limits import limit_text
 from inerter.files.study.method_labels import method_labels
-from inerter.files.study.places import places
 from inerter.files.study.quantity_texts import as_written
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
@@ -83,7 +82,7 @@ def vehicle_rows(study: Study) -> list[tuple[str, str]]:
 
 def _formed_rows(study: Study, name: str) -> Iterator[tuple[str, str]]:
     """Rows on the settings of a user-defined index that have value types other than quantities."""
-    known = places(study)
+    known = study.numbers
     for key, form, value in study.own_indices[name].typed_settings if name in study.own_indices else ():
         for words, text in form.told(value):
             yield f"{words} of {name}", text
@@ -101,7 +100,7 @@ def _roughness(study: Study) -> str:
 
 
 def _coherence_rows(study: Study) -> Iterator[tuple[str, str]]:
-    known = places(study)
+    known = study.numbers
     for key, value in study.coherence.items():
         label = f"road.coherence.{key}"
         words = known[label].words if label in known else f"{key} of the coherence"
@@ -134,7 +133,7 @@ def further_rows(study: Study) -> list[tuple[str, str]]:
 
 def condition_rows(study: Study) -> list[tuple[str, str, str]]:
     """The operating conditions: name or number, share of all, and the numbers that are others."""
-    total, known = sum(condition.share for condition in study.conditions), places(study)
+    total, known = sum(condition.share for condition in study.conditions), study.numbers
     rows = []
     for i, condition in enumerate(study.conditions, start=1):
         numbers = [
@@ -242,7 +241,7 @@ def _limit_texts(study: Study) -> list[str]:
 
 def _number_text(study: Study, place: str) -> str:
     """Number at a place as text: its value, its bounds if free, or the ends of its sweep."""
-    number = places(study)[place]
+    number = study.numbers[place]
     for sweep in study.sweeps:
         if sweep.label == place:
             ends = _value_text(study, min(sweep.values), sweep.unit), _value_text(study, max(sweep.values), sweep.unit)

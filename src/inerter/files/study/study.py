@@ -13,13 +13,14 @@ from inerter.errors import NetworkError, StudyError
 from inerter.field_metadata import fields_of
 from inerter.files.common.codec import keyed_dataclass
 from inerter.files.common.layouts import StrutLayout
+from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.roads import MeasuredLine
 from inerter.files.common.suggest import nearest
 from inerter.files.study.conditions import StudyCondition, condition_of, what_of
 from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.place import ELEMENTS, Place, element_at, place_of
-from inerter.files.study.places import free_in_vehicle, sections_of, with_numbers
+from inerter.files.study.places import free_in_vehicle, places, sections_of, with_numbers
 from inerter.files.study.sections import OVER, Settings, study_codec
 from inerter.indices.definition import Index
 from inerter.indices.names import index_names
@@ -201,6 +202,11 @@ class Study(Settings):
             raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
         here = self.at(swept) if swept else self
         return here.layouts[layout].design(here.vehicle, here.elements, here.free_networks)
+
+    @cached_property
+    def numbers(self) -> dict[str, Number]:
+        """All numbers of the study by the labels of their places, in the order of the file."""
+        return places(self)
 
     @cached_property
     def free_units(self) -> dict[str, str]:

@@ -15,7 +15,7 @@ from inerter.files.common.suggest import nearest, some
 from inerter.files.study.conditions import StudyCondition, following, what_of
 from inerter.files.study.limits import limit_words
 from inerter.files.study.place import Place, Sweep, element_at, place_of
-from inerter.files.study.places import number_at, places, with_numbers
+from inerter.files.study.places import number_at, with_numbers
 from inerter.files.study.sections import SweepRange
 from inerter.files.study.study import Study, elements_used
 from inerter.networks.elements import Free, Tied
@@ -66,9 +66,9 @@ def unknown_place(study: Study, place: Place) -> EntryError:
         return invalid_entry(place.label, fault="a free network has no value", expected="an element or another number")
     if element_at(place) == place.key:
         missing = f"{quote_value(place.key)} is not in [elements]; available: {some(study.elements)}"
-        return EntryError(fault=missing, hint=nearest(place.key, places(study)))
+        return EntryError(fault=missing, hint=nearest(place.key, study.numbers))
     expected = "a key path such as road.speed or vehicle.sprung_mass, or an element"
-    hint = nearest(place.label, places(study))
+    hint = nearest(place.label, study.numbers)
     return EntryError(fault=f"this study has no number at {place.label}", expected=expected, hint=hint)
 
 

@@ -16,7 +16,7 @@ from inerter.exports.refusals import delay_notes
 from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Bridge, Element, Network, Parallel, Series
 from inerter.networks.elements.roles import LinearRole
-from inerter.networks.transform import UpsideDown, linearise
+from inerter.networks.transform import UpsideDown, linearise, parts_between
 from inerter.systems.graph import linear_graph
 from inerter.systems.outputs import input_unit, of_mount, velocity_of
 from inerter.vehicle.mechanism import Coordinate, Force, Mechanism, Port, Strut
@@ -199,21 +199,17 @@ class _Source:
 
     def _network(self, network: Network, upper: str, lower: str) -> str:
         """Add a network between two flanges; returns its force."""
+        forces = [self._network(*part) for part in parts_between(network, upper, lower, self._node)]
         match network:
-            case Parallel(parts):
-                return " + ".join(self._network(part, upper, lower) for part in parts)
-            case Series(parts):
-                nodes = [upper, *(self._node() for _ in parts[1:]), lower]
-                forces = [self._network(part, *ends) for part, *ends in zip(parts, nodes, nodes[1:], strict=False)]
+            case Parallel():
+                return " + ".join(forces)
+            case Series():
                 force = min(forces, key=len)
                 return f"({force})" if " " in force else force
-            case Bridge(a, b, c, d, e):
-                left, right = self._node(), self._node()
-                places = ((a, upper, left), (b, left, lower), (c, upper, right), (d, right, lower), (e, left, right))
-                forces = [self._network(arm, top, bottom) for arm, top, bottom in places]
+            case Bridge():
                 return f"({forces[0]} + {forces[2]})"
-            case UpsideDown(turned):
-                return f"(-({self._network(turned, lower, upper)}))"
+            case UpsideDown():
+                return f"(-({forces[0]}))"
             case Element():
                 kind, parameter = _PARTS[network.linear]
                 made = self._name(network.label)
@@ -222,7 +218,7 @@ class _Source:
                 return f"{made}.f"
         raise ExportError(f"Modelica has no part for {network!r}.")
 
-    def _node(self) -> str:
+    def _node(self, number: int) -> str:
         made = self._name("node")
         self.parts.append(f"{_T}.Components.Rod {made}(L=0);")
         return f"{made}.flange_a"

@@ -13,9 +13,9 @@ from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.matlab import exact
 from inerter.exports.request import ExportSpec
-from inerter.networks.elements import Bridge, Element, Network, Parallel, Series
+from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import LinearRole
-from inerter.networks.transform import UpsideDown
+from inerter.networks.transform import parts_between
 
 _LETTERS = {LinearRole.STIFFNESS: "L", LinearRole.DAMPING: "R", LinearRole.MASS: "C"}
 _WORD = re.compile(r"[^A-Za-z0-9_]")
@@ -74,27 +74,16 @@ class _Netlist:
         self._names = _Names()
 
     def lines(self, network: Network, upper: str, lower: str) -> Iterator[str]:
-        match network:
-            case Parallel(parts):
-                for part in parts:
-                    yield from self.lines(part, upper, lower)
-            case Series(parts):
-                ends = [upper, *(self._node() for _ in parts[1:]), lower]
-                for part, top, bottom in zip(parts, ends, ends[1:], strict=False):
-                    yield from self.lines(part, top, bottom)
-            case Bridge(a, b, c, d, e):
-                left, right = self._node(), self._node()
-                places = ((a, upper, left), (b, left, lower), (c, upper, right), (d, right, lower), (e, left, right))
-                for arm, top, bottom in places:
-                    yield from self.lines(arm, top, bottom)
-            case UpsideDown(turned):
-                yield from self.lines(turned, lower, upper)
-            case Element():
-                yield self._part(network, upper, lower)
-            case _:
-                raise ExportError(f"A netlist has no part for {network!r}.")
+        if isinstance(network, Element):
+            yield self._part(network, upper, lower)
+            return
+        parts = parts_between(network, upper, lower, self._node)
+        if not parts:
+            raise ExportError(f"A netlist has no part for {network!r}.")
+        for part in parts:
+            yield from self.lines(*part)
 
-    def _node(self) -> str:
+    def _node(self, number: int) -> str:
         self._nodes += 1
         return f"n{self._nodes}"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from inerter.errors import DesignError
 from inerter.formatting import format_range
@@ -12,6 +13,8 @@ from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Ne
 from inerter.networks.elements.algebra import Complex, Fraction, reduce_bridge
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.free_network import FreeNetwork, check_chosen
+
+End = TypeVar("End")  # of a network, in whatever form a caller has it
 
 
 def map_elements(network: Network, change: Callable[[Element], Network]) -> Network:
@@ -212,6 +215,32 @@ class UpsideDown(Network):
 
 
 _Reduced = tuple[Network | None, bool]  # what is left of a network; if nothing is, whether it is rigid
+
+
+def parts_between(
+    network: Network, upper: End, lower: End, node: Callable[[int], End]
+) -> list[tuple[Network, End, End]]:
+    """Parts of a network between two ends, each with its own upper and lower end; none of an element.
+
+    `node` gives the inner node of each number, counted from 1.
+
+    >>> import inerter as it
+    >>> strut = it.Spring(120e3) - it.Damper(4000.0)
+    >>> [(part.label, *ends) for part, *ends in parts_between(strut, "body", "wheel", lambda number: f"node {number}")]
+    [('k', 'body', 'node 1'), ('c', 'node 1', 'wheel')]
+    """
+    match network:
+        case Parallel(parts):
+            return [(part, upper, lower) for part in parts]
+        case Series(parts):
+            nodes = [upper, *(node(number) for number in range(1, len(parts))), lower]
+            return list(zip(parts, nodes, nodes[1:], strict=False))
+        case Bridge(a, b, c, d, e):
+            left, right = node(1), node(2)
+            return [(a, upper, left), (b, left, lower), (c, upper, right), (d, right, lower), (e, left, right)]
+        case UpsideDown(turned):
+            return [(turned, lower, upper)]
+    return []
 
 
 def _linear(network: Network) -> _Reduced:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.systems.polynomials import Polynomial
 
 Coefficient = float | Fraction
+Matrix = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -142,6 +144,26 @@ def as_filter(given: object) -> Filter | None:
     if isinstance(given, LinearSystem):
         return Filter.of(given)
     raise LinearSystemError(f"A filter is Filter(numerator, denominator) or a LinearSystem, got {given!r}.")
+
+
+def with_filter_states(X_eta: Matrix, X_x: Matrix, filters: Sequence[Filter]) -> tuple[Matrix, Matrix, list[slice]]:
+    """Rates X_eta eta + X_x x of states, with those of the states of `filters`, and the places of these.
+
+    The states of a filter are a signal and its derivatives but the highest, which is a further unknown in eta.
+
+    >>> with_filter_states(np.zeros((2, 1)), np.eye(2), [Filter([1.0], [1.0, 3.0, 2.0])])[2]
+    [slice(2, 4, None)]
+    """
+    old, first = X_eta.shape
+    edges = (old + np.cumsum([0, *(one.order for one in filters)])).tolist()
+    states = [slice(start, stop) for start, stop in pairwise(edges)]
+    rates, own = np.zeros((edges[-1], first + len(filters))), np.zeros((edges[-1], edges[-1]))
+    rates[:old, :first], own[:old, :old] = X_eta, X_x
+    for unknown, (one, place) in enumerate(zip(filters, states, strict=True), start=first):
+        rows = np.arange(place.start, place.stop)
+        own[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
+        rates[rows[-1:], unknown] = one.scaled_coefficients[0]
+    return rates, own, states
 
 
 def _convolve(left: Sequence[Coefficient], right: Sequence[Coefficient]) -> list[Fraction]:

@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError, MechanismError
 from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Network, Parallel, Series
-from inerter.networks.transform import UpsideDown, expand_elements, linearise, map_elements, to_analysis, to_simulation
+from inerter.networks.transform import (
+    UpsideDown,
+    expand_elements,
+    linearise,
+    map_elements,
+    parts_between,
+    to_analysis,
+    to_simulation,
+)
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Matrix = NDArray[np.float64]
@@ -207,23 +215,21 @@ class _Builder:
         return carriers
 
     def _add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> Carriers:
+        placed = parts_between(network, upper, lower, lambda number: self._node(mount, number, upper.size))
+        carriers = [self.add(mount, *part) for part in placed]
         match network:
             case Element():
                 self.branches.append((network, upper - lower))
                 return {len(self.branches) - 1: 1.0}
-            case Parallel(parts):
-                return _merge(self.add(mount, part, upper, lower) for part in parts)
-            case Series(parts):
-                ends = [upper, *(self._node(mount, i, upper.size) for i in range(1, len(parts))), lower]
-                carriers = [self.add(mount, part, ends[i], ends[i + 1]) for i, part in enumerate(parts)]
+            case Parallel():
+                return _merge(carriers)
+            case Series():
                 return min(carriers, key=len)
             case Bridge():
-                left, right = self._node(mount, 1, upper.size), self._node(mount, 2, upper.size)
-                places = ((upper, left), (left, lower), (upper, right), (right, lower), (left, right))
-                a, b, c, d, _ = (self.add(mount, arm, *at) for arm, at in zip(network.parts, places, strict=True))
+                a, b, c, d, _ = carriers
                 return min(_merge((a, c)), _merge((b, d)), key=len)
-            case UpsideDown(turned):
-                return {branch: -sign for branch, sign in self.add(mount, turned, lower, upper).items()}
+            case UpsideDown():
+                return {branch: -sign for branch, sign in carriers[0].items()}
         raise TypeError(f"not a network: {network!r}")
 
     def _node(self, mount: str, number: int, size: int) -> Matrix:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from inerter.errors import LinearSystemError
 from inerter.networks.elements import middle
 from inerter.signals.coherence import Excess
 from inerter.systems.descriptor import Descriptor, Sum, close
-from inerter.systems.filters import Filter
+from inerter.systems.filters import Filter, with_filter_states
 from inerter.systems.polynomials import Polynomial
 
 Column = tuple[str, str, float]  # its name, the source, and the delay
@@ -101,16 +100,9 @@ def apply_excitation(descriptor: Descriptor, paths: Sequence[InputPath]) -> Desc
     if all(a.filter is None or a.filter.order == 0 for a in paths):
         return _scale_inputs(d, list(zip(at, paths, strict=True)), sums)
     chains = list(dict.fromkeys((i, a.filter) for i, a in zip(at, paths, strict=True) if a.filter is not None))
-    old, e, inputs = d.X_x.shape[0], d.S.shape[1], len(d.inputs)
-    edges = np.cumsum([old, *(one.order for _, one in chains)])
-    places = [slice(int(i), int(j)) for i, j in pairwise(edges)]
-    n = int(edges[-1])
-    X_eta, X_x = np.zeros((n, e + inputs + len(chains))), np.zeros((n, n))
-    X_eta[:old, :e], X_eta[:old, e : e + inputs], X_x[:old, :old] = d.X_eta, d.X_u, d.X_x
-    for unknown, ((_, one), place) in enumerate(zip(chains, places, strict=True), start=e + inputs):
-        rows = np.arange(place.start, place.stop)
-        X_x[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
-        X_eta[rows[-1:], unknown] = one.scaled_coefficients[0]
+    filters = [one for _, one in chains]
+    X_eta, X_x, places = with_filter_states(np.concatenate((d.X_eta, d.X_u), axis=1), d.X_x, filters)
+    n = len(X_x)
     reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, paths, strict=True)]
     wired = _FilterChains(reached, chains, places, len(columns), n)
     S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))

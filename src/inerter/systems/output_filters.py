@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from inerter.systems.descriptor import Descriptor
-from inerter.systems.filters import Filter
+from inerter.systems.filters import Filter, with_filter_states
 
 EquationStacks = tuple[Any, ...]  # S, R, F, Y_eta, Y_x, Y_u
 FilteredOutputs = list[tuple[int, Filter, slice]]  # output, filter, its states
@@ -27,15 +26,10 @@ def with_output_filters(descriptor: Descriptor, filters: Sequence[Filter | None]
     chosen = [(i, f) for i, f in enumerate(filters) if f is not None]
     if not chosen:
         return d
-    edges = n + np.cumsum([0, *(f.order for _, f in chosen)])
-    places = [(i, f, slice(int(a), int(b))) for (i, f), (a, b) in zip(chosen, pairwise(edges), strict=True)]
-    e, states, unknowns = d.S.shape[1], int(edges[-1]), d.S.shape[1] + len(chosen)
-    X_eta, X_x, X_u = np.zeros((states, unknowns)), np.zeros((states, states)), np.zeros((states, d.X_u.shape[1]))
-    X_eta[:n, :e], X_x[:n, :n], X_u[:n] = d.X_eta, d.X_x, d.X_u
-    for unknown, (_, one, at) in enumerate(places, start=e):
-        rows = np.arange(at.start, at.stop)
-        X_x[rows[:-1], rows[1:]] = one.scaled_coefficients[0]
-        X_eta[rows[-1:], unknown] = one.scaled_coefficients[0]
+    X_eta, X_x, slices = with_filter_states(d.X_eta, d.X_x, [f for _, f in chosen])
+    places = [(i, f, at) for (i, f), at in zip(chosen, slices, strict=True)]
+    states = len(X_x)
+    X_u = np.concatenate((d.X_u, np.zeros((states - n, d.X_u.shape[1]))))
     S, R, F, Y_eta, Y_x, Y_u = _with_equations((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), places, states)
     names = [f"{d.outputs[i]}_filter_{k + 1}" for i, f, _ in places for k in range(f.order)]
     return replace(

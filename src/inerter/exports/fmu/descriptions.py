@@ -69,9 +69,9 @@ def description_2(model: FmuModel, source: str) -> str:
         "  <ModelVariables>",
     ]
     for reference, one in enumerate(variables):
-        unit = f" unit={quoteattr(one.quantity.unit)}" if one.quantity.unit else ""
-        start = "" if one.start is None else f' start="{one.start!r}"'
-        lines.append(f"    <ScalarVariable {_attributes(one, reference)}><Real{unit}{start}/></ScalarVariable>")
+        lines.append(
+            f"    <ScalarVariable {_attributes(one, reference)}><Real{_unit_and_start(one)}/></ScalarVariable>"
+        )
     places = {one.quantity.name: i for i, one in enumerate(variables, start=1)}
     outputs = [one for one in variables if one.causality == "output"]
     lines += ["  </ModelVariables>", "  <ModelStructure>"]
@@ -96,9 +96,7 @@ def description_3(model: FmuModel) -> str:
         '    <Float64 name="time" valueReference="0" causality="independent" variability="continuous" unit="s"/>',
     ]
     for reference, one in enumerate(variables, start=1):
-        unit = f" unit={quoteattr(one.quantity.unit)}" if one.quantity.unit else ""
-        start = "" if one.start is None else f' start="{one.start!r}"'
-        lines.append(f"    <Float64 {_attributes(one, reference)}{unit}{start}/>")
+        lines.append(f"    <Float64 {_attributes(one, reference)}{_unit_and_start(one)}/>")
     references = {one.quantity.name: i for i, one in enumerate(variables, start=1)}
     outputs = [one for one in variables if one.causality == "output"]
     lines += ["  </ModelVariables>", "  <ModelStructure>"]
@@ -172,6 +170,12 @@ def _attributes(one: Variable, reference: int) -> str:
         f'name={quoteattr(one.quantity.name)} valueReference="{reference}" causality="{one.causality}"'
         f' variability="{one.variability}"{initial}{description}'
     )
+
+
+def _unit_and_start(one: Variable) -> str:
+    """Attributes of the type of a variable."""
+    unit = f" unit={quoteattr(one.quantity.unit)}" if one.quantity.unit else ""
+    return unit if one.start is None else f'{unit} start="{one.start!r}"'
 
 
 def _rate_unit(unit: str, order: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 import inerter as it
 from inerter.identification.experiment import experiment_of
@@ -31,6 +32,7 @@ def test_one_low_frequency_gives_no_value_of_an_elastic_device_that_noise_decide
         assert low <= TRUTH[name] <= high, name
 
 
+@pytest.mark.campaign
 def test_one_tone_without_the_bandwidth_of_the_load_cell_gives_no_wrong_value() -> None:
     """A delay is then a fourth unknown: with it a shaft a hundredth as stiff fits as well, by its noise."""
     rig = RIG.run(it.cosine(6e-4, 2.3), 3.0)
@@ -42,6 +44,7 @@ def test_one_tone_without_the_bandwidth_of_the_load_cell_gives_no_wrong_value() 
     assert not fit.identifiable["sensor delay"]
 
 
+@pytest.mark.campaign
 def test_a_sweep_of_the_same_device_has_all_its_values() -> None:
     fit = it.identify(RIG.run(it.chirp(2e-4, 1.0, 15.0, 3.2), 3.0), "elastic", starts=16)
     assert fit.status.ok

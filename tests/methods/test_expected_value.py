@@ -256,6 +256,7 @@ def test_play_that_rattles_on_has_a_value_of_its_own(index):
     assert "nothing is added" in rattling.notes[0]
 
 
+@pytest.mark.campaign
 def test_play_that_no_linear_model_resembles_warns_in_its_status_alone():
     """The model has less motion on the lines of the road than the simulation lacks beyond them."""
     car = QuarterCar(250.0, 35.0, 150e3, Spring(10.93e3) | Damper(84.9) | Gap(1.1e-3) - Spring(514e3))

@@ -49,6 +49,7 @@ def lightly_damped() -> tuple[it.QuarterCar, it.RideComfort]:
     return car, it.RideComfort(it.Road(4.45592308e-7, 12.23575582))
 
 
+@pytest.mark.campaign
 def test_where_friction_damps_a_resonance_with_few_lines_roads_are_longer() -> None:
     """On 160 s the value is 1.2 % too low: see the marathon, and 6.85 +- 0.05 by time stepping on white noise."""
     car, index = lightly_damped()

@@ -47,13 +47,16 @@ LONGER_EXAMPLES = {"ModelSelection", "StagedIdentification"}  # of what these fu
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Those that are allowed more time than others come first, so that none is left to run alone at the end.
 
-    Examples in docstrings that fit records are campaigns, or marathons.
+    Examples in docstrings that fit records are campaigns, or marathons. What one of its parameters makes a marathon is
+    no campaign, whatever the others make of it.
     """
     for item in items:
         if isinstance(item, DoctestItem):
             name = item.name.rpartition(".")[2]
             if name in LONG_EXAMPLES | LONGER_EXAMPLES:
                 item.add_marker(pytest.mark.campaign if name in LONG_EXAMPLES else pytest.mark.marathon)
+        if item.get_closest_marker("marathon") is not None:
+            item.own_markers = [mark for mark in item.own_markers if mark.name != "campaign"]
     items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
 
 

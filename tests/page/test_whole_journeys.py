@@ -87,7 +87,7 @@ def _began(visitor: Visitor, person: Mouse) -> None:
     visitor.settled()
 
 
-@pytest.mark.parametrize("kind", PEOPLE)
+@pytest.mark.parametrize("kind", BY_KEYBOARD)
 def test_an_own_car_from_the_first_screen_to_the_report(
     kind: type[Mouse], nothing: Served, visitors: Callable[..., Visitor], tmp_path: Path
 ) -> None:

@@ -46,6 +46,13 @@ def test_an_example_is_a_line_of_the_file(capsys):
         assert tomllib.loads(line.removeprefix("  example  ").partition("    in [")[0])
 
 
+def test_keys_of_conditions_and_limits_are_told(capsys):
+    assert "Share of the operating time" in told(capsys, "conditions.share")
+    assert 'example  name = "loaded"    in [[conditions]]' in told(capsys, "conditions.name")
+    assert told(capsys, "study.subject_to.suspension-travel").startswith("study.subject_to.NAME: Limit of an index")
+    assert 'S3 = "' in told(capsys, "layouts.S1")
+
+
 def test_a_key_that_others_may_replace_is_told_with_them(capsys):
     """As `inerter check` says of a file that has none of them."""
     text = told(capsys, "road.roughness")
@@ -83,6 +90,7 @@ def test_words_that_keys_take_are_told_too(word, capsys):
         ("", "inerter explain"),
         ("...", "inerter explain"),
         ("signal.amplitude", "inerter simulate"),
+        ("study.forse", 'Did you mean "study.force"?'),
         ("NAME", "inerter explain"),
     ],
 )

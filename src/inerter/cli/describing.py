@@ -10,7 +10,7 @@ from typing import Any
 
 from inerter.errors import StudyError
 from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of
-from inerter.files.common.kinds import kind_with
+from inerter.files.common.kinds import FileKind, kind_with
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.study.schema import study_schema
@@ -24,6 +24,7 @@ from inerter.vehicle.registry import VEHICLES
 _WIDTH = 80
 _ROWS: dict[str, Any] = {"vehicle": VEHICLES, "index": INDICES, "method": METHODS, "element": ELEMENTS}
 _PLACE, _UNIT = 32, 11  # columns of the table of keys
+_NAMES = {"layouts": "S3"}  # of an example, by its section; elsewhere that of an element
 
 
 def schema() -> None:
@@ -40,9 +41,8 @@ def explain(wanted: str | None) -> None:
     if wanted is None:
         print("\n".join(_table(keys)))
         return
-    section = wanted.partition(".")[0]
-    if kind_with(section) is not None and all(key.place != section for key in keys):
-        raise StudyError(_unknown(wanted, keys))
+    if other := _other_kind(wanted, keys):
+        raise StudyError(f"{quote_value(wanted)} is a key of {other.plural}, for: inerter {other.command}.")
     told = [list(_describe_key(key, keys)) for key in find_keys(keys, wanted)]
     told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
     if not told:
@@ -55,10 +55,13 @@ def _words() -> dict[str, Mapping[str, Any]]:
     return {**_ROWS, "index": {name: INDICES[symbol] for name, symbol in index_names().items()}}
 
 
+def _other_kind(wanted: str, keys: Sequence[Key]) -> FileKind | None:
+    """The kind of files that alone has the section of a key; None if study files have it too."""
+    section = wanted.partition(".")[0]
+    return None if any(key.place == section for key in keys) else kind_with(section)
+
+
 def _unknown(wanted: str, keys: Sequence[Key]) -> str:
-    other = kind_with(wanted.partition(".")[0])
-    if other is not None:
-        return f"{quote_value(wanted)} is a key of {other.plural}, for: inerter {other.command}."
     known = (
         [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
     )
@@ -80,9 +83,10 @@ def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:
         instead = f", or {key.instead}" if key.instead else ""
         yield from _wrap_text(f"default  none: required{instead}" if key.needed else "default  not set")
     if key.example is not None:
-        name = "k" if key.name == ANY_NAME else key.name
         section = key.place.rpartition(".")[0]
-        place = f"    in [{section}]" if section and ANY_NAME not in section else ""
+        name = _NAMES.get(section, "k") if key.name == ANY_NAME else key.name
+        header = f"[[{section}]]" if any(one.repeated and one.place == section for one in keys) else f"[{section}]"
+        place = f"    in {header}" if section and ANY_NAME not in section else ""
         yield from _wrap_text(f"example  {as_line(name, key.example)}{place}")
     if key.section and (held := below(keys, key)):
         yield ""

@@ -25,6 +25,7 @@ class Key:
     needed: bool = False
     instead: str = ""  # lines of other keys, one of which is needed in its place
     section: bool = False  # whether it holds other keys
+    repeated: bool = False  # whether it is a section that may occur several times, [[place]]
     of: str = ""  # the model or kind that has it, where not all have
 
     @property
@@ -78,6 +79,7 @@ def _ends(key: Key, parts: list[str]) -> bool:
 def _below(schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]:
     """The keys that a table has."""
     for one in _alternatives(schema):
+        one = one.get("items", one)  # of a list of tables, those of each
         own, needed = _model_of_table(one) or of, one.get("required", ())
         for name, key in one.get("properties", {}).items():
             yield from _key(key, f"{place}.{name}" if place else name, name in needed, own)
@@ -87,12 +89,13 @@ def _below(schema: Mapping[str, Any], place: str, of: str = "") -> Iterator[Key]
 
 def _key(schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterator[Key]:
     """Key of a schema, and the keys below it."""
-    said = {**next((one for one in _alternatives(schema) if "properties" not in one), {}), **schema}
+    ways = list(_alternatives(schema))
+    said = {**next((one for one in ways if "properties" not in one), {}), **schema}
     held = list(_below(schema, place, of))
     words = said.get("enum") or said.get("items", {}).get("enum") or ([said["const"]] if "const" in said else [])
     yield Key(
         place=place,
-        sentence=said.get("description", ""),
+        sentence=said.get("description") or next((one["description"] for one in ways if "description" in one), ""),
         unit=said.get(UNIT, ""),
         words=tuple(words),
         example=next(iter(said.get("examples", ())), None),
@@ -100,6 +103,7 @@ def _key(schema: Mapping[str, Any], place: str, needed: bool, of: str) -> Iterat
         needed=needed or INSTEAD in said,
         instead=said.get(INSTEAD, ""),
         section=bool(held),
+        repeated=bool(held) and said.get("type") == "array",
         of=of,
     )
     yield from held

@@ -88,7 +88,7 @@ _LIMIT = LimitTextCodec(_limit_text, lambda: {"anyOf": [{"type": "number"}, quan
 
 @keyed_dataclass
 class LimitTable:
-    """The sides on which an index is limited."""
+    """Limit of an index, such as tyre-load, or of the static-stiffness of a strut."""
 
     at_most: str | float | None = key(
         _LIMIT, "Upper limit of the r.m.s. value, peak gain or stiffness.", 'at_most = "3 mm"', default=None

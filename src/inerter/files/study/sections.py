@@ -90,7 +90,7 @@ class ConditionEntry:
     share: float = key(
         POSITIVE, "Share of the operating time, relative to the other conditions.", "share = 0.3", default=1.0
     )
-    name: str | None = key(TEXT, "Name.", 'name = "loaded"', default=None)
+    name: str | None = key(TEXT, "Name of the condition in reports.", 'name = "loaded"', default=None)
     numbers: Mapping[str, Any]
 
 

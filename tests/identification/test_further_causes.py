@@ -11,8 +11,12 @@ from faulty_rig import Rig, force_of, laws, model, motion, random_rig, record_of
 from quick_fits import explained, quick_fit
 
 import inerter as it
+from inerter.identification import hypotheses
 from inerter.identification.experiment import experiment_of
 from inerter.identification.friction_models import ChainValues, simulate_chain
+from inerter.identification.models import MODELS
+from inerter.identification.parameter_space import space_of
+from inerter.identification.problem import FitProblem
 from inerter.identification.statements.causes import Suspect
 
 RIG = Rig(duration=2.5, tones=((2e-3, 1.6), (8e-4, 3.1), (3e-4, 5.7)))
@@ -57,6 +61,38 @@ def test_laws_are_stepped_as_the_rig_does(name: str) -> None:
     off = np.std((simulate_chain(chain, experiment, exact.size) - exact)[use])
     assert off < 5e-3 * np.std(exact[use])
     assert off < 0.05 * np.std((without - exact)[use])
+
+
+def rigid_record() -> it.Record:
+    """33 kg with 26 N of friction, read by a load cell of 150 Hz that the record does not state."""
+    rig = it.VirtualRig(it.Inerter(33.0) | it.Friction(26.0), sampling=500.0, force_bandwidth=150.0)
+    known = rig.run(it.cosine(2e-3, 1.4), 2.0)
+    return it.Record(known.time, known.displacement, known.force)
+
+
+def test_a_load_cell_of_unstated_bandwidth_reads_reversals_as_one_of_that_bandwidth() -> None:
+    """A filter of the samples does not, for the friction reverses between them."""
+    e, rig, read = experiment_of(rigid_record()), it.Rig(MODELS["friction"]), {}
+    for suspect, value in ((hypotheses.load_cell(), 150.0), (hypotheses.filtered_force(), 0.5 / np.pi / 150.0)):
+        assumed = (suspect,)
+        space = space_of(rig, assumed)
+        problem = FitProblem(rig, space, [e], [], assumed=assumed)
+        (force,) = problem.forces(space.coordinates_of({"b": 33.0, "f": 26.0, suspect.unknowns[0].name: value}))
+        assert force is not None
+        read[suspect.unknowns[0].name] = float(np.std((force - e.record.force)[e.kept]))
+    assert read["load cell bandwidth"] < 0.4 * read["force filter"]
+
+
+@pytest.mark.campaign
+def test_an_unstated_bandwidth_of_the_load_cell_is_named_first() -> None:
+    """Without it a reversal of the friction is sharper in the model than in the record."""
+    values = {"b": 33.0, "f": 26.0, hypotheses.DELAY: 1e-3}
+    (first, *_), _ = explained(quick_fit(rigid_record(), MODELS["friction"], values, (hypotheses.delay(0.02),)))
+    assert first.name is Suspect.FILTERED_FORCE
+    assert "bandwidth is not stated" in first.sentence
+    assert first.values["load cell bandwidth"] == pytest.approx(150.0, rel=0.1)
+    for name, truth in (("b", 33.0), ("f", 26.0)):
+        assert first.estimates[name][0] == pytest.approx(truth, rel=0.01)
 
 
 @pytest.mark.marathon

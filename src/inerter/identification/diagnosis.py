@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from inerter.identification.experiment import Experiment, experiment_of
 from inerter.identification.fit import Explanation, Localisation, NormalisedResidual
 from inerter.identification.friction_models import law_hypotheses
-from inerter.identification.hypotheses import Hypothesis, Values, sensor_hypotheses
+from inerter.identification.hypotheses import Hypothesis, Values, load_cell, sensor_hypotheses
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
 from inerter.identification.parameter_space import Space, space_of
@@ -116,7 +116,12 @@ def explanations(
     for e in (a.explanation for a in (*last, *first[_FITTED:])):
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
-    return sorted(found.values(), key=lambda e: (-round(e.explained / _AS_GOOD), len(e.values), -e.explained))
+    return sorted(found.values(), key=_likelihood)
+
+
+def _likelihood(e: Explanation) -> tuple[int, int, float]:
+    """Key by which the most likely explanation comes first."""
+    return -round(e.explained / _AS_GOOD), len(e.values) + len(e.estimates), -e.explained
 
 
 def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list[Hypothesis]:
@@ -126,6 +131,7 @@ def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     peak = max(float(np.abs(e.record.force[e.kept]).max()) for e in problem.experiments)
     found = [*sensor_hypotheses(problem.offset), *recording_faults(problem, places)]
+    found += [load_cell()] if any(e.record.force_bandwidth is None for e in problem.experiments) else []
     found += [] if chain is None else law_hypotheses(chain, fastest, stroke, peak)
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ Values = Mapping[str, float]
 GAIN, DELAY = "sensor gain", "sensor delay"
 LONGEST_DELAY = 0.02  # [s] that is searched
 _GAINS = (0.5, 2.0)
+_BANDWIDTHS = (5.0, 5e3)  # [Hz]
 
 
 @dataclass(frozen=True)
@@ -119,6 +120,28 @@ def filtered_force() -> Hypothesis:
         return filter_force(force, e.record.interval, values[name])
 
     return Hypothesis(Suspect.FILTERED_FORCE, (unknown,), read=read, details=lambda values: {"time": values[name]})
+
+
+def load_cell() -> Hypothesis:
+    """Hypothesis of a load cell whose bandwidth the records do not state, as a part of the simulated rig.
+
+    Friction that reverses between two samples is not resolved by a filter of the samples.
+    """
+    name = "load cell bandwidth"
+    unknown = Unknown(name, "Hz", *_BANDWIDTHS, 100.0)
+
+    def change_motion(e: Experiment, values: Values) -> Experiment:
+        if e.record.force_bandwidth is not None:
+            return e
+        return replace(e, record=replace(e.record, force_bandwidth=values[name]))
+
+    return Hypothesis(
+        Suspect.FILTERED_FORCE,
+        (unknown,),
+        change_motion=change_motion,
+        details=lambda values: {"time": 0.5 / math.pi / values[name], "unstated": True},
+        starts=tuple({name: bandwidth, DELAY: 0.0} for bandwidth in (60.0, 250.0)),  # for a delay stood for it
+    )
 
 
 def drift() -> Hypothesis:

@@ -78,10 +78,10 @@ class FitProblem:
 
     def simulate(self, experiment: Experiment, coordinates: Matrix) -> tuple[Matrix, Trajectory] | None:
         """Load cell force in one record, and the motion of the device; None where the simulation fails."""
-        system, e = self.system(coordinates, experiment.record), experiment
-        values = self.space.values_by_name(coordinates)
+        e, values = experiment, self.space.values_by_name(coordinates)
         for hypothesis in self.assumed:
             e = hypothesis.change_motion(e, values)
+        system = self.system(coordinates, e.record)
         run = None if system is None else e.run(system, None if self.horizon == 1.0 else self.samples(experiment))
         if run is None:
             return None

@@ -74,6 +74,12 @@ def _dropped_samples_text(d: Details) -> str:
     return f"samples were dropped without a gap in the time channel ({'; '.join(records)})"
 
 
+def _filtered_force_text(d: Details) -> str:
+    if "unstated" in d:
+        return f"the load cell, whose bandwidth is not stated, filters the force at {_corner_frequency_text(d)}"
+    return f"the force was low-pass filtered at {_corner_frequency_text(d)}"
+
+
 def _stribeck_text(d: Details) -> str:
     at_rest, beyond = format_alike([d["at_rest"], d["beyond"]], "N", 3)
     speed = format_quantity(d["speed"], "m/s", 2)
@@ -141,7 +147,7 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
     Suspect.GAIN: _always("the gain of the load cell is not one"),
     Suspect.DELAY: _delay_text,
     Suspect.FILTERED_DISPLACEMENT: lambda d: f"the displacement was low-pass filtered at {_corner_frequency_text(d)}",
-    Suspect.FILTERED_FORCE: lambda d: f"the force was low-pass filtered at {_corner_frequency_text(d)}",
+    Suspect.FILTERED_FORCE: _filtered_force_text,
     Suspect.DRIFT: lambda d: f"the zero of the load cell drifts, by {format_quantity(d['drift'], 'N', 2)}",
     Suspect.FIXTURE_MASS: lambda d: (
         f"a fixture mass of {format_quantity(d['mass'], 'kg')} between load cell and device"

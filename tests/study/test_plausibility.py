@@ -82,3 +82,26 @@ def test_an_answer_begins_with_what_no_vehicle_stands(tmp_path, capsys):
     assert answer.index("Warning") < answer.index("better than S1 in ride comfort (J1)")
     assert "Road: class G of ISO 8608 (Gd(n0) = 51200e-6 m^3" in " ".join(lines.split())
     assert "no public road is as rough" in (tmp_path / "results" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_an_answer_doubts_a_body_without_support_and_not_the_road_of_an_undamped_one(tmp_path, capsys):
+    text = (
+        QUARTER[: QUARTER.index("[layouts]")]
+        + """
+[layouts]
+S1 = "k | c"
+undamped = "k | b"
+hanging = "k - c"
+[study]
+indices = ["J1", "J3"]
+optimise = "norm"
+"""
+    )
+    (tmp_path / "study.toml").write_text(text, encoding="utf-8")
+    assert call(["run", str(tmp_path / "study.toml"), "-o", str(tmp_path / "results"), "-j", "1"]) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert "Warning: no static equilibrium: no spring supports the body with hanging. Put a spring in parallel." in out
+    assert "Ride comfort (J1) of undamped is infinite" in out
+    assert "inf r.m.s." not in out
+    assert out.index("Warning: no static") < out.index("in ride comfort (J1)")

@@ -8,6 +8,8 @@ import numpy as np
 import xarray as xr
 
 from inerter.errors import InerterError
+from inerter.files.common.suggest import some
+from inerter.files.study.cases import NO_EQUILIBRIUM, lacks_equilibrium
 from inerter.files.study.study import Study
 from inerter.formatting import format_alike, format_quantity
 from inerter.indices.registry import INDICES
@@ -19,12 +21,15 @@ from inerter.vehicle.registry import VEHICLES
 
 
 def result_warnings(results: xr.Dataset, study: Study) -> Iterator[str]:
-    """Warnings on implausible values: accelerations beyond that of gravity, tyre loads beyond the static load."""
+    """Warnings on bodies without support, accelerations beyond that of gravity, and tyre loads beyond the static."""
     if study.road is None or study.model not in VEHICLES:
         return
+    if unsupported := [name for name in study.layouts if lacks_equilibrium(study.design(name).mechanism())]:
+        yield f"Warning: {NO_EQUILIBRIUM} with {some(unsupported)}. Put a spring in parallel."
     for name in study.indices:
         kind, values = INDICES.get(study.symbol(name)), results["value"].sel(index=name)
-        largest = float(values.max()) if np.isfinite(values).any() else np.nan
+        finite = values.values[np.isfinite(values.values)]  # of an infinite one the status tells the cause
+        largest = float(finite.max(initial=0.0))
         if kind is RideComfort and largest > STANDARD_GRAVITY:
             yield (
                 f"Warning: {name} reaches {format_quantity(largest, 'm/s^2')} r.m.s., more than the acceleration of "

@@ -139,6 +139,16 @@ def test_where_nothing_keeps_the_limits_no_design_is_called_the_best(study):
         ] * 3
 
 
+@pytest.mark.parametrize(("tolerance", "values"), [({}, ""), ({"c": 0.2}, " with nominal values")])
+def test_limits_are_told_to_hold_without_the_tolerances(study, tolerance, values):
+    data = designs()
+    kept = np.zeros(data["status"].shape, dtype=bool)
+    results = limited(data, np.zeros((*kept.shape, 2), dtype=bool), kept)
+    told = conclusion_sentences(results, replace(study, limits=LIMITS, tolerance=tolerance))[-1]
+    assert told.startswith("All designs found satisfy r.m.s. suspension travel at most 9 mm and")
+    assert f"at most 1.3 kN{values}." in told
+
+
 def test_no_number_on_a_page_is_parted_from_its_unit(study, sweep_study, tmp_path):
     nearest = "infeasible: no design was found that has suspension travel at most 9 mm; the nearest has 7.5 kN s/m"
     for make, asked in ((designs, study), (sweep, sweep_study)):

@@ -63,8 +63,9 @@ def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
             if (at := _infeasible_places_clause(results, name)) is not None
         ]
         neglect = neglect_clause(study, study.optimise) if study.optimise is not None else ""
+        nominal = " with nominal values" if study.tolerance else ""
         computed = f", computed {neglect}" if neglect else ""
-        yield f"All designs found satisfy {format_list(limits)}{computed}.{''.join(none)}"
+        yield f"All designs found satisfy {format_list(limits)}{nominal}{computed}.{''.join(none)}"
 
 
 def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:

@@ -127,8 +127,9 @@ def test_friction_is_refused_in_a_sentence(folder: Path, capsys: pytest.CaptureF
     ("arguments", "sentence"),
     [
         (["car.toml", "--to", "matlab"], "has several indices, J1, J3. Choose one with --index."),
-        (["car.toml", "--to", "matlab", "--index", "J7"], "has no index 'J7', but J1, J3."),
-        (["car.toml", "--to", "matlab", "--index", "J1", "--layout", "S9"], "has no layout 'S9', but S3."),
+        (["car.toml", "--to", "matlab", "--index", "J7"], 'has no index "J7", but J1, J3.'),
+        (["car.toml", "--to", "matlab", "--index", "J1", "--layout", "s3"], '"s3", but S3. Did you mean "S3"?'),
+        (["car.toml", "--to", "matlab", "--index", "J1", "--layout", "S9"], 'has no layout "S9", but S3.'),
         (["car.toml", "--to", "matlab", "--index", "J1", "--point", "2"], "has no sweep"),
         (["car.toml", "--to", "excel", "--index", "J1"], "Unknown kind of export 'excel'"),
         (["car.toml", "--to", "control", "--index", "J1"], "is an object of Python"),

@@ -47,7 +47,7 @@ def test_plots_are_files(kind: str, name: str, begins: bytes, tmp_path: Path) ->
     [
         (["--kind", "bodes"], "Unknown kind of plot 'bodes'"),
         (["--kind", "bode", "-o", "a.txt"], "a plot is a file with the suffix"),
-        (["--kind", "bode", "--layout", "S9", "--index", "J1"], "has no layout 'S9'"),
+        (["--kind", "bode", "--layout", "S9", "--index", "J1"], 'has no layout "S9"'),
         (["--kind", "bode"], "Choose one with --index"),
         (["--kind", "bode", "-o", "nowhere/a.svg"], "folder not found"),
         (["--kind", "bode", "--window", "1:2"], "does not use --window; it uses --layout, --index"),

@@ -15,6 +15,7 @@ from inerter.optimisation.constrained_search import ConstrainedProblem
 from inerter.optimisation.limits import bounds_of, for_each
 
 NORM = it.Norm()
+RESPONSE = it.RandomResponse({"force": 1.0}, it.WhiteForce("push", 1.0))  # whose outputs decide its unit
 
 
 def strut(rng):
@@ -207,6 +208,10 @@ def test_limits_of_what_is_simulated(screw_car):
     [
         (lambda: it.at_most(J1, 0.0), "must be a positive number of m/s\\^2"),
         (lambda: it.at_most(J1, float("nan")), "must be a positive number"),
+        (
+            lambda: it.at_most(RESPONSE, -1.0),
+            "must be a positive number, got -1.0",
+        ),
         (lambda: it.at_most("J1", 1.0), "requires an index"),
         (lambda: it.at_most(it.RideComfort, 1.0), "requires an index"),
         (lambda: it.optimise(quarter(), J1, NORM, subject_to=it.at_most(J3, 1.0)), "must be a list of constraints"),

@@ -337,7 +337,7 @@ def test_a_front_of_a_half_car_over_conditions():
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"indices": [J1]}, "requires two or three indices"),
+        ({"indices": [J1]}, "requires two or three indices, got 1"),
         ({"indices": J1}, "requires two or three indices"),
         ({"indices": "J1 J3"}, "requires two or three indices"),
         ({"indices": [J1, J1]}, "different indices"),

@@ -101,7 +101,7 @@ REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "a road that is not there": (lambda: drive(road={"lane": WAVE}), r"Unknown input 'lane'.*available: road"),
     "a force that is not there": (lambda: drive(forces={"wind": WAVE}), r"Unknown input 'wind'.*sprung_force"),
-    "an array for a signal": (lambda: drive(road=np.zeros(101)), r"needs a signal, such as sine"),
+    "an array for a signal": (lambda: drive(road=np.zeros(101)), r"\(time, value\), got ndarray\.$"),
     "road and displacement": (lambda: drive(displacement=WAVE), r"either road or displacement"),
     "a delay without a speed": (
         lambda: drive(paper_half_car(STRUT, STRUT)),

@@ -51,8 +51,9 @@ class Limit:
                 f"A constraint requires an index, such as TyreLoad(road) or static_stiffness('strut'), got {self.of!r}."
             )
         if not is_number(self.value) or self.value <= 0.0:
+            of_unit = f" of {unit}" if (unit := self.of.unit) else ""
             raise PerformanceIndexError(
-                f"The limit of {self.of.title} must be a positive number of {self.of.unit}, got {self.value!r}."
+                f"The limit of {self.of.title} must be a positive number{of_unit}, got {self.value!r}."
             )
 
     def __str__(self) -> str:

@@ -131,8 +131,10 @@ def points_at_aims(
 
 
 def _check_request(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[IndexLike, ...]:
-    if not isinstance(indices, Sequence) or isinstance(indices, str) or len(indices) not in (2, 3):
+    if not isinstance(indices, Sequence) or isinstance(indices, str):
         raise PerformanceIndexError(f"A Pareto front requires two or three indices, got {indices!r}.")
+    if len(indices) not in (2, 3):
+        raise PerformanceIndexError(f"A Pareto front requires two or three indices, got {len(indices)}.")
     for one in indices:
         check_request(vehicle, one, method)
     if len(set(map(repr, indices))) < len(indices):

@@ -155,7 +155,8 @@ def _by_name(what: str, given: object, names: Sequence[str]) -> dict[str, Signal
             raise SimulationError(f"Unknown input {name!r} for {what}=; available: {_format_names(names)}.")
         if not isinstance(signal, Signal):
             raise SimulationError(
-                f"The input {name!r} needs a signal, such as sine(...) or Signal.sampled(time, value), got {signal!r}."
+                f"The input {name!r} needs a signal, such as sine(...) or Signal.sampled(time, value), got "
+                f"{type(signal).__name__}."
             )
     return dict(found)
 

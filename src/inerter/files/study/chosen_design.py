@@ -17,6 +17,7 @@ from inerter.files.study.cases import Case, cases, run_case
 from inerter.files.study.loading import load_study, unchosen_problems
 from inerter.files.study.running import DATASET, RESOLVED
 from inerter.files.study.study import Study
+from inerter.units import quote_value
 from inerter.vehicle.vehicle import Vehicle
 
 WITHOUT_CONDITIONS = "the vehicle and road are those of the file itself, not of one of its conditions"
@@ -112,8 +113,7 @@ def _choose(what: str, given: str | None, known: list[str], source: Path) -> str
         plural = {"layout": "layouts", "index": "indices"}[what]
         raise StudyError(f"{source}: has several {plural}, {some(known)}. Choose one with --{what}.")
     if given not in known:
-        hint = nearest(given, known)
-        raise StudyError(f"{source}: has no {what} {given!r}, but {some(known)}.{f' {hint}' if hint else ''}")
+        raise StudyError(f"{source}: has no {what} {quote_value(given)}, but {some(known)}.{nearest(given, known)}")
     return given
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from browser import Served, Visitor, step_slider_and
+from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
 ELEMENTS = (
@@ -26,6 +27,9 @@ real_inerters = { friction = "10 N", best = 1 }"""
 
 SHOWS = """values => Object.entries(values).every(([index, value]) =>
   Math.abs(document.querySelector(`td[data-index=${index}]`)?.dataset.value / value - 1) < 1e-6)"""
+
+KEPT = """([place, entry]) => JSON.stringify(place.reduce((table, key) => table?.[key],
+  JSON.parse(sessionStorage.getItem('inerter.document')).study)) === JSON.stringify(entry)"""
 
 
 def searches(served: Served) -> list[dict[str, Any]]:
@@ -143,6 +147,31 @@ def test_a_study_without_a_free_network_gets_one(visitor: Visitor) -> None:
     assert page.locator(".problems, .element.unknown").count() == 0
     page.get_by_role("button", name="Undo").click()
     assert page.locator(".answers .pick", has_text="any").count() == 0
+
+
+def test_a_car_of_two_struts_says_at_which_the_network_is_free_and_has_limits_in_the_form(visitor: Visitor) -> None:
+    """Each choice is one step; a limit of the form is one of the study, on each tyre."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "half-car.toml")
+    page.wait_for_selector("text=half-car.toml is open")
+    visitor.pick("S3")
+    page.get_by_role("button", name="More networks").click()
+    form = page.locator("form.begin", has_text="Search for the best network")
+    for name, front, rear, told in (
+        ("at rear", "k | c_f - b_f", "k | any", "Free at rear. At front: k | c_f - b_f."),
+        ("the same at front and rear", "k | any", "k | any", "Free at front and rear, the same network"),
+    ):
+        form.get_by_role("button", name=name, exact=True).click()
+        form.locator("p.quiet", has_text=told).wait_for()
+        page.wait_for_function(KEPT, arg=[["layouts", "any"], {"front": front, "rear": rear}])
+        if name == "at rear":
+            page.get_by_role("button", name="Undo").click()
+    form.get_by_label("Add one on").select_option("J3")
+    assert form.get_by_label("How much, with its unit").get_attribute("placeholder") == "in N"
+    form.get_by_label("How much, with its unit").fill("850 N")
+    form.get_by_label("How much, with its unit").press("Enter")
+    form.get_by_text("each tyre, at most").wait_for()
+    page.wait_for_function(KEPT, arg=[["study", "subject_to"], {"J3": {"at_most": "850 N"}}])
 
 
 def test_a_value_in_the_si_unit_is_shown_in_one_that_suits_it(visitor: Visitor) -> None:

@@ -10,10 +10,10 @@ from typing import Any
 from inerter.app.designs import Design
 from inerter.decision.results import LimitResult
 from inerter.errors import Status, StatusKind
-from inerter.files.study.limits import StudyLimit, limited_quantity_words, limits_in, part_words
+from inerter.files.study.limits import StudyLimit, each_like, limited_quantity_words, limits_in, part_words
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, in_words
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.active_constraints import ConstraintResult
@@ -46,12 +46,13 @@ _remembered = lru_cache(_REMEMBERED)(_estimate_index)  # a step of a slider leav
 
 @dataclass(frozen=True)
 class DesignLimit:
-    """Limit of a study at a design: the quantity in words, and the estimate closest to the limit.
+    """Limit of a study at a design: in words, without its value; the quantity closest to it, and its estimate.
 
     `kept` is None where that is not known; `excess` is the logarithm of value over limit, towards the forbidden side.
     """
 
     limit: StudyLimit
+    words: str
     quantity: str
     part: str
     estimate: Estimate
@@ -69,6 +70,7 @@ class DesignLimit:
             "of": self.limit.of,
             "sense": self.limit.sense,
             "limit": self.limit.value,
+            "words": self.words,
             "quantity": self.quantity,
             "title": f"{self.quantity} {self.limit.side}",
             "part": self.part,
@@ -102,4 +104,5 @@ def _limit(study: Study, said: StudyLimit, several: list[Limit], vehicle: Vehicl
     except FAILURES as error:
         estimate = Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error)))
         part, kept, excess = "", None, inf
-    return DesignLimit(said, limited_quantity_words(study, said.of, part), part, estimate, kept, excess)
+    each, closest_words = (limited_quantity_words(study, said.of, one) for one in (each_like(part), part))
+    return DesignLimit(said, f"{each} {in_words(said.sense)}", closest_words, part, estimate, kept, excess)

@@ -1,12 +1,13 @@
 // What is asked of the study: its indices, and the limits that every design keeps.
 
 import { numbersOf } from "../library.js";
-import { Chip, Select, formHandler } from "../parts/controls.js";
+import { Chip, Select, textHandler, useChoice } from "../parts/controls.js";
 import { Field } from "../parts/field.js";
-import { html } from "../parts/html.js";
+import { html, useState } from "../parts/html.js";
 import { freshName } from "../network/algebra.js";
 import { answerOf } from "../questions.js";
 import { entryAt, indicesIn, own } from "../state/document.js";
+import { printed } from "../state/scale.js";
 import { indexChoices, indexName } from "./answers.js";
 import { Entry } from "./values.js";
 
@@ -24,52 +25,61 @@ const STIFFNESS = "static-stiffness"; // of a strut, beside the indices
 /** @param {{store: Store}} props */
 export function AskedPanel({ store }) {
   const state = store.get();
-  const { study } = state.history.present;
-  const asked = indicesIn(study);
-  const limits = limitsOf(state);
-  const choices = limitable(state);
-  /** @type {{of: string, quantity: string}[]} */
-  const told = (answerOf(state, "decision").value?.rows ?? [])
-    .flatMap((/** @type {any} */ { limits }) => limits ?? []);
+  const asked = indicesIn(state.history.present.study);
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
     ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
+  return html`<div class="asked"><b class="legend">Indices of the study</b>
+    <div class="row" role="group" aria-label="Indices of the study">
+      ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
+        on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
+        set=${() => toggle(symbol)}>${indexName({ symbol, title })}<//>`)}
+    </div>
+    <${Constraints} store=${store} /></div>`;
+}
+
+/** The limits that every design keeps, also those of a search, and fields for a further one.
+ * @param {{store: Store}} props */
+export function Constraints({ store }) {
+  const state = store.get();
+  const choices = limitable(state);
+  const [of = "", setOf] = useChoice(choices.map(([value]) => value));
+  const [sense = "", setSense] = useChoice(SENSES);
+  const [value, setValue] = useState("");
+  /** @type {{of: string, sense: string, words: string}[]} */
+  const told = (answerOf(state, "decision").value?.rows ?? [])
+    .flatMap((/** @type {any} */ { limits }) => limits ?? []);
   /** @param {Limit} limit @param {string | undefined} value */
   const place = ({ path, sense }, value) => {
     const { turn, history } = store.get(); // of now: what is typed may be taken over later
     if (turn === state.turn) store.change({ type: "placed", place: PLACE,
       value: limited(entryAt(history.present.study, PLACE), [...path, sense], value) });
   };
-  return html`<div class="asked"><b class="legend">Indices and constraints</b>
-    <div class="row" role="group" aria-label="Indices of the study">
-      ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
-        on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
-        set=${() => toggle(symbol)}>${indexName({ symbol, title })}<//>`)}
-    </div>
-    ${limits.map((limit) => {
+  const add = () => {
+    if (value.trim()) place({ path: of.split("."), sense, value }, value.trim());
+    setValue("");
+  };
+  const unit = of.startsWith(STIFFNESS) ? "N/m" : kindOfIndex(state, of)?.unit;
+  return html`<b class="legend">Constraints on every design</b>
+    ${limitsOf(state).map((limit) => {
       const of = limit.path.join(".");
-      const quantities = [...new Set(told.filter((each) => each.of === of).map(({ quantity }) => quantity))];
-      const what = quantities.length === 1 ? quantities[0] : choices.find(([value]) => value === of)?.[1] ?? of;
-      const label = `${what} ${limit.sense.replace("_", " ")}`;
+      const label = told.find((each) => each.of === of && each.sense === limit.sense)?.words
+        ?? `${choices.find(([value]) => value === of)?.[1] ?? of} ${limit.sense.replace("_", " ")}`;
       const key = `${of} ${limit.sense}`;
       return html`<p class="row" key=${key}>${label} <${Entry} id=${`limit ${key}`} label=${label}
         text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
         <button type="button" aria-label=${`Delete the limit: ${label}`}
           onClick=${() => place(limit, undefined)}>Delete</button></p>`;
     })}
-    <form class="row" onSubmit=${formHandler((form, { currentTarget }) => {
-      const [of, sense, value] = ["of", "sense", "value"].map((name) => String(form.get(name) ?? "").trim());
-      if (!value) return;
-      place({ path: of.split("."), sense, value }, value);
-      /** @type {HTMLFormElement} */ (currentTarget).reset();
-    })}>
-      <${Select} label="Constraint on" name="of" choices=${choices} />
-      <${Select} name="sense" aria-label="Which side"
+    <div class="row">
+      <${Select} label="Add one on" value=${of} set=${setOf} choices=${choices} />
+      <${Select} aria-label="Which side" value=${sense} set=${setSense}
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
-      <input name="value" class="entry" aria-label="How much, with its unit" placeholder="such as 8 mm"
-        autocomplete="off" /> <button class="edged">Add</button>
-    </form>
-  </div>`;
+      <input class="entry" aria-label="How much, with its unit" placeholder=${unit ? `in ${printed(unit)}` : "how much"}
+        autocomplete="off" value=${value} onInput=${textHandler(setValue)}
+        onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />
+      <button type="button" class="edged" onClick=${add}>Add</button>
+    </div>`;
 }
 
 /** Settings of an index, as the library declares them: words to choose from, and quantities, which an index that the

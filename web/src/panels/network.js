@@ -5,7 +5,7 @@ import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
 import { brief, briefIn, printed, symbolParts } from "../state/scale.js";
-import { isFreeNetwork, kindOf, layoutsWith, treeOf, unitOf, wrongIn } from "../library.js";
+import { isFreeNetwork, kindOf, layoutsWith, selectedElement, treeOf, unitOf, wrongIn } from "../library.js";
 import { mountsOf } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { symbolPath } from "./sketch.js";
@@ -142,11 +142,15 @@ function add({ store, how }, name, added, by = "join") {
   draw(store, next, placeOf(next, name), added);
 }
 
-/** A new element of a kind, with the value of its example. @param {Editing} editing @param {ElementKind} kind
- * @param {"join" | "replace"} [by] */
+/** A new element of a kind, with the value of one of its kind that it replaces, else of its example.
+ * @param {Editing} editing @param {ElementKind} kind @param {"join" | "replace"} [by] */
 function addKind(editing, kind, by) {
-  const name = newName(editing.store, kind);
-  add(editing, name, { [name]: kind.example }, by);
+  const { store } = editing;
+  const name = newName(store, kind);
+  const old = by === "replace" ? selectedElement(store.get()) : null;
+  const like = old !== null && kindOf(store.get(), old)?.key === kind.key;
+  const entry = like ? store.get().history.present.study.elements?.[old] : kind.example;
+  add(editing, name, { [name]: /** @type {string} */ (entry) }, by);
 }
 
 /** @param {Store} store @param {ElementKind} kind */

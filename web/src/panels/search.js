@@ -5,15 +5,16 @@ import { IndexChips, Select, Table, useChoice } from "../parts/controls.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { kindOf, searchedLayouts, treeOf } from "../library.js";
+import { isFreeNetwork, kindOf, searchedLayouts, treeOf } from "../library.js";
 import { quickMethod } from "../methods.js";
 import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf } from "../questions.js";
-import { entryAt, textOf } from "../state/document.js";
+import { entryAt, own, strutsOf, textOf } from "../state/document.js";
 import { estimated, printed, rounded, scaled, shown, times, unitFor } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indicesOf, percent } from "./answers.js";
+import { Constraints } from "./asked.js";
 import { Files } from "./files.js";
 import { Sketch } from "./sketch.js";
 import { FrontView, valuesIn } from "./front.js";
@@ -41,21 +42,54 @@ export function toSearch(store) {
 const FREE = { network: 3, springs: { from: "1 kN/m", to: "10 MN/m" }, dampers: { from: "10 N s/m", to: "1 MN s/m" },
   inerters: { from: "10 g", to: "100 t" } };
 
-/** Adds a layout whose strut is the spring that carries the vehicle with a free network in parallel, and shows what can
- * be searched in it. @param {Store} store */
-export function addFreeNetwork(store) {
+/** A network with the spring that carries the vehicle, null where there is none. @param {State} state
+ * @param {string} text */
+function carryingIn(state, text) {
+  const tree = treeOf(state, text);
+  return tree?.kind === "parallel" ? tree.parts.find((part) => part.kind === "element"
+    && kindOf(state, part.name)?.key === "spring") : null;
+}
+
+/** Buttons that add a layout with a free network: for several struts at one of them, or the same at all that carry.
+ * @param {{store: Store}} props */
+export function AddFreeNetwork({ store }) {
   const state = store.get();
-  const { present } = state.history;
-  const { elements = {}, layouts = {}, study = {} } = present.study;
-  const tree = treeOf(state, textOf(present));
-  const carries = tree?.kind === "parallel" && tree.parts.find((part) => part.kind === "element"
-    && kindOf(state, part.name)?.key === "spring");
-  const name = freshName("any", Object.keys(elements));
+  const { study, layout } = state.history.present;
+  const entry = own(study.layouts, layout);
+  const struts = strutsOf(entry);
+  const carrying = struts.filter((strut) => carryingIn(state, entry[strut]));
+  /** @param {string[]} at @param {string} words */
+  const button = (at, words) => html`<button type="button" class="edged remedy" key=${words}
+    onClick=${() => addFreeNetwork(store, at)}>${words}</button>`;
+  if (struts.length === 0) return button([""], "Add a layout with a free network");
+  return html`Add a layout with a free network
+    ${carrying.length > 1 && button(carrying, `the same at ${inWords(carrying)}`)}
+    ${struts.map((strut) => button([strut], `at ${inWords([strut])}`))}`;
+}
+
+/** @param {string[]} struts */
+const inWords = (struts) => struts.map((strut) => strut.replaceAll("_", " ")).join(" and ");
+
+/** Adds a layout in which these struts, or the only one, are the spring that carries the vehicle with a free network in
+ * parallel, and shows what can be searched in it. @param {Store} store @param {string[]} struts */
+function addFreeNetwork(store, struts) {
+  const state = store.get();
+  const { study, layout, strut } = state.history.present;
+  const [name, added] = [study.elements, study.layouts].map((table) => freshName("any", Object.keys(table ?? {})));
+  const texts = strut === null ? { "": textOf(state.history.present) } : own(study.layouts, layout);
+  /** @param {string} text */
+  const freed = (text) => {
+    const carries = carryingIn(state, text);
+    return carries ? `${written(carries)} | ${name}` : name;
+  };
+  const next = Object.fromEntries(Object.entries(texts).map(([each, text]) =>
+    [each, struts.includes(each) ? freed(text) : text]));
   const gesture = `free ${Date.now()}`;
-  store.change({ type: "layoutAdded", name: freshName("any", Object.keys(layouts)) }, gesture);
-  store.change({ type: "drawn", text: carries ? `${written(carries)} | ${name}` : name, added: { [name]: FREE } },
-    gesture);
-  if (study.optimise === undefined)
+  store.change({ type: "layoutAdded", name: added }, gesture);
+  store.change({ type: "placed", place: ["elements", name], value: FREE }, gesture);
+  store.change({ type: "placed", place: ["layouts", added], value: next[""] ?? next }, gesture);
+  store.change({ type: "selected", layout: added, strut: struts.includes(strut ?? "") ? strut : struts[0] }, gesture);
+  if (study.study?.optimise === undefined)
     store.change({ type: "placed", place: ["study", "optimise"], value: quickMethod(state)?.name }, gesture);
   store.dispatch({ type: "rested" });
   toSearch(store);
@@ -77,8 +111,22 @@ export function SearchForm({ store }) {
     <fieldset class="row"><legend class="visually-hidden">Indices</legend>
       ${indicesOf(state).map(({ symbol, title }) => html`<label key=${symbol} title=${title}><input type="checkbox"
         name="index" value=${symbol} defaultChecked=${wanted.includes(symbol)} /> ${symbol}</label>`)}</fieldset>
+    <${Where} state=${state} layout=${layout} />
     ${state.parts?.layouts[layout].free_networks.map((name) => html`<${FreeNetwork} key=${name} store=${store}
-      name=${name} />`)}`;
+      name=${name} />`)}
+    <${Constraints} store=${store} />`;
+}
+
+/** At which struts the network is searched, and what is at the others.
+ * @param {{state: State, layout: string}} props */
+function Where({ state, layout }) {
+  const entry = own(state.history.present.study.layouts, layout);
+  const rows = (state.parts?.networks ?? []).filter(({ path }) => path[1] === layout && path.length > 2);
+  const [free, others] = [true, false].map((is) => rows.filter(({ names = [] }) =>
+    names.some((name) => isFreeNetwork(state, name)) === is).map(({ path }) => path[2]));
+  return free.length > 0 && html`<p class="quiet">Free at ${inWords(free)}${free.length > 1
+    && ", the same network with the same values"}.${others.map((strut) =>
+    ` At ${inWords([strut])}: ${entry[strut]}.`)}</p>`;
 }
 
 /** A key of a free network that is a number or a switch, as the library declares it.

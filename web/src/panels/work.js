@@ -3,9 +3,9 @@
 import { percent } from "./answers.js";
 import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody, frontIndices, frontTitle } from "./front.js";
-import { SearchForm, SearchResult, addFreeNetwork, searchBody } from "./search.js";
+import { SearchForm, SearchResult, AddFreeNetwork, searchBody } from "./search.js";
 import { SweepResult, sweepTitle } from "./sweep.js";
-import { Select, Table, formHandler } from "../parts/controls.js";
+import { Select, Table, formHandler, showNewest } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { placed, printed, quantity, rounded, scaled, takenApart, unitFor } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
@@ -19,11 +19,11 @@ import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js"
 /** @import { Api } from "../api.js" */
 
 /** A kind of long work: what it needs beside the study, its form, and its result.
- * `name` is that of one of its jobs; `lacks` says what the study has not that it needs, and `remedy` what a button does
- * about it.
+ * `name` is that of one of its jobs; `lacks` says what the study has not that it needs, and `Remedy` is buttons that
+ * give it.
  * @typedef {{kind: string, title: string, sentence: string, body: (state: State, form: FormData) => object,
  * name?: (form: FormData) => string, lacks?: (state: State) => string | null, Form?: any, Result?: any,
- * remedy?: {label: string, act: (store: Store) => void}}} Kind */
+ * Remedy?: any}} Kind */
 
 /** @type {Kind[]} */
 const KINDS = [
@@ -37,9 +37,9 @@ const KINDS = [
     sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
   { kind: "search", title: "Search for the best network", body: searchBody, Form: SearchForm, Result: SearchResult,
     lacks: (state) => (searchedLayouts(state).length > 0 ? null : "No layout has a free network."),
-    remedy: { label: "Add a layout with a free network", act: addFreeNetwork },
-    sentence: "Every network that a free network may be, ranked; of two or three indices the front over all networks."
-  },
+    Remedy: AddFreeNetwork,
+    sentence: "Every network that a free network may be, ranked; of two or three indices the front over all networks. "
+      + "With several axles, constraints or other design variables each network takes up to a minute." },
 ];
 
 /** @param {{store: Store, api: Api}} props */
@@ -70,12 +70,12 @@ function Begin({ store, api, kind }) {
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     const told = await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) });
     setTold(told);
-    if (!told) requestAnimationFrame(() => document.querySelector(".jobs .job")?.scrollIntoView({ block: "nearest" }));
+    if (!told) showNewest(".jobs .job");
   })}>
     <h3>${kind.title}</h3>
     <p class="quiet">${kind.sentence}</p>
-    ${lacking ? html`<p class="row quiet">${lacking} ${kind.remedy && html`<button type="button" class="edged remedy"
-        onClick=${() => kind.remedy?.act(store)}>${kind.remedy.label}</button>`}</p>`
+    ${lacking ? html`<p class="row"><span class="quiet">${lacking}</span>
+        ${kind.Remedy && html`<${kind.Remedy} store=${store} />`}</p>`
       : html`<div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}
         <button class="edged">Begin</button></div>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}

@@ -12,6 +12,10 @@ export const formHandler = (act) => (event) => {
   act(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)), event);
 };
 
+/** Shows the first element that a selector finds, from its top, once it is drawn. @param {string} selector */
+export const showNewest = (selector) =>
+  requestAnimationFrame(() => document.querySelector(selector)?.scrollIntoView({ block: "start" }));
+
 /** The name that is picked, or the first where none of them is, and the function that picks one.
  * @param {string[]} names @returns {[string | undefined, (name: string) => void]} */
 export function useChoice(names) {

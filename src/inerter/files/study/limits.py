@@ -242,8 +242,13 @@ def each_of(study: Study, limit: StudyLimit) -> str:
     for index in study.in_each(quantity_limited(study, limit.of)):
         several = for_each(index, vehicle)
         if outputs := list(filter(None, map(output_of, several))):
-            return f"each {part_words(vehicle, outputs[0]).rpartition(' ')[2]}"
+            return each_like(part_words(vehicle, outputs[0]))
     return ""
+
+
+def each_like(part: str) -> str:
+    """Parts of the kind of one, such as "each tyre" for "front tyre"; empty for none."""
+    return f"each {part.rpartition(' ')[2]}" if part else ""
 
 
 def part_words(vehicle: Vehicle, output: str) -> str:

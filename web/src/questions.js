@@ -3,7 +3,7 @@
 import { isSearched, layoutsWith, numbersOf } from "./library.js";
 import { isQuick, judging } from "./methods.js";
 import { shownOf, soughtIn } from "./state/answers.js";
-import { entryAt, indicesIn, isRange, own, strutsOf } from "./state/document.js";
+import { entryAt, indicesIn, isRange, mapValues, own } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -327,10 +327,15 @@ export function unitsIn(state, { study, values, ranges }) {
   return [...found.values()];
 }
 
-/** Whether a vehicle's struts can have networks of their own. @param {any} about @param {Document} document
- * @returns {string[]} */
-export function mountsOf(about, { study, layout }) {
-  const model = about?.vehicles?.find((/** @type {any} */ { key }) => key === study.vehicle?.model);
-  const mounts = (model?.mounts ?? []).map((/** @type {any} */ mount) => mount.key ?? mount);
-  return mounts.length > 1 ? mounts : strutsOf(own(study.layouts, layout));
+/** The networks of the present layout by strut, also those that the vehicle gives, as the library lists them: of a text
+ * the first one and those that are like it have that text. @param {State} state
+ * @returns {{[strut: string]: string}} */
+export function strutTexts(state) {
+  const { study, layout } = state.history.present;
+  const entry = own(study.layouts, layout) ?? "";
+  /** @type {{[strut: string]: string}} */
+  const known = own(answerOf(state, "check").value?.layouts, layout)?.mounts ?? {};
+  if (typeof entry === "object") return { ...known, ...entry };
+  const [first] = Object.values(known);
+  return mapValues(known, (text) => (text === first ? entry : text));
 }

@@ -201,7 +201,7 @@ const FOR_RECORDS = "quarter-car"; // the example that is opened where a record 
 
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openRecord(store, api, file) {
-  store.look({ tab: "rig" });
+  store.look({ tab: "rig", tall: true });
   store.say(`Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });

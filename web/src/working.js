@@ -5,8 +5,9 @@ import { freeIn, layoutsWith, unitOf } from "./library.js";
 import { isQuick, methodOf, quickMethod } from "./methods.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
-import { questions } from "./questions.js";
+import { questions, strutTexts } from "./questions.js";
 import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
+import { strutWords } from "./state/scale.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -201,8 +202,10 @@ export function takeNetwork(store, found, row) {
 
 /** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would
  * have the name of another element gets a new one. Returns what to tell. @param {Store} store @param {Api} api
- * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device */
-export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
+ * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device
+ * @param {string} [strut] another strut than the one that is edited */
+export async function takeDevice(store, api, { elements = {}, layouts = {} }, strut = "") {
+  const texts = strutTexts(store.get());
   const document = store.get().history.present;
   if (document.layout === "") return "Open a study first: the device joins its strut.";
   const known = document.study.elements ?? {};
@@ -220,19 +223,22 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }) {
   const name = nextLayout(document);
   const gesture = `device ${Date.now()}`;
   store.change({ type: "layoutAdded", name }, gesture);
+  if (strut) store.change({ type: "strutsParted", texts, strut }, gesture);
   const before = textOf(store.get().history.present);
   const text = before ? `${before} | ${network.text}` : network.text;
   store.change({ type: "drawn", text, added: device.elements }, gesture);
   store.dispatch({ type: "rested" });
-  return `The device is in the new layout ${name}, in parallel with the strut of ${document.layout}. To join another `
-    + "strut: undo, select its layout, take the device again.";
+  return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut ?? "strut"])} of ${
+    document.layout}. To join another strut: undo, select its layout, take the device again.`;
 }
 
 /** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.
  * @param {Store} store @param {Api} api @param {any} fit
- * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device */
-export async function takeFitted(store, api, fit, device) {
-  if (isOk(fit.status) && device !== null) return `${unidentified(fit)}${await takeDevice(store, api, device)}`;
+ * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}} | null} device
+ * @param {string} [strut] */
+export async function takeFitted(store, api, fit, device, strut) {
+  if (isOk(fit.status) && device !== null)
+    return `${unidentified(fit)}${await takeDevice(store, api, device, strut)}`;
   return `${doubted([{ of: "the fit", status: fit.status }])}${withheld(fit)}`;
 }
 

@@ -62,7 +62,7 @@ const CHANGES = [
   { type: "layoutAdded", name: "S3" },
   { type: "layoutRenamed", name: "other" },
   { type: "layoutRemoved" },
-  { type: "strutsParted", struts: ["front", "rear"] },
+  { type: "strutsParted", texts: { front: "k | c", rear: "k" }, strut: "rear" },
   { type: "strutsJoined" },
   { type: "elementRenamed", old: "c", name: "damper", study: STUDY },
   { type: "elementRemoved", name: "b" },

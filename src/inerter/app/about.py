@@ -17,11 +17,11 @@ from inerter.field_metadata import Field, fields_of, mounts_of
 from inerter.files.common.free_networks import FREE_NETWORK
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
-from inerter.files.identification.sections import CHOOSE
+from inerter.files.identification.sections import CHOOSE, CHOOSE_WORDS
 from inerter.files.study import KIND
 from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
 from inerter.formatting import capital, typeset_unit, unit_choices
-from inerter.identification.models import MODELS
+from inerter.identification.models import MODELS, model_words
 from inerter.indices.names import index_words
 from inerter.indices.registry import INDICES, index_choices
 from inerter.methods.linear import CONVENTIONS
@@ -83,6 +83,7 @@ def about() -> dict[str, Any]:
         ],
         "export_note": f"{capital(WITHOUT_CONDITIONS)}.",
         "models": [*MODELS, CHOOSE],
+        "model_words": {**{name: model_words(name) for name in MODELS}, CHOOSE: CHOOSE_WORDS},
         "examples": list(examples()),
     }
 

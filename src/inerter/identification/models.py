@@ -7,6 +7,7 @@ from functools import reduce
 from operator import sub
 from types import MappingProxyType
 
+from inerter.formatting import format_list
 from inerter.networks.elements import (
     Damper,
     Element,
@@ -65,6 +66,20 @@ MODELS: Mapping[str, Network] = MappingProxyType(
 backlash `gap` [m] to each side, inertance `b` [kg], friction `f` [N]; each also `-viscous`, with a damper `c` [N s/m]
 in parallel with the inerter. Shorter chains are parts of longer ones, so that a fit can be compared with those of its
 parts."""
+_WORDS = {"f": "dry friction", "c": "viscous damping", "ks": "an elastic shaft", "gap": "backlash"}
+
+
+def model_words(name: str) -> str:
+    """A model of the catalogue in words.
+
+    >>> model_words("ball-screw")
+    'inerter with dry friction, an elastic shaft and backlash'
+    """
+    labels = {element.label for element in MODELS[name].elements()}
+    parts = [words for label, words in _WORDS.items() if label in labels]
+    return f"inerter with {format_list(parts)}" if parts else "ideal inerter"
+
+
 MOUNT = Spring(2e8, name="mount_k") | Damper(2e4, name="mount_c")  # deflects by 1 um under 200 N
 _STANDING = 300.0  # [Hz] default bandwidth of the load cell under a rigid device; the force does not depend on it
 

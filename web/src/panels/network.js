@@ -4,9 +4,9 @@ import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } fro
 import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
-import { brief, briefIn, printed, symbolParts } from "../state/scale.js";
+import { brief, briefIn, printed, strutWords, symbolParts } from "../state/scale.js";
 import { isFreeNetwork, kindOf, layoutsWith, selectedElement, treeOf, unitOf, wrongIn } from "../library.js";
-import { mountsOf } from "../questions.js";
+import { strutTexts } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { symbolPath } from "./sketch.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
@@ -25,26 +25,39 @@ const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store, api: Api}} props */
 export function NetworkPanel({ store, api }) {
-  const state = store.get();
-  const document = state.history.present;
-  const mounts = mountsOf(state.about, document);
-  const parted = strutsOf(own(document.study.layouts, document.layout));
-  return html`<section class=${`panel network ${state.view.across ? "across" : ""}`} aria-labelledby="network-title">
-    <${Editor} store=${store} api=${api}>
-    ${mounts.length > 0 && html`<div class="row struts pad" role="group" aria-label="Struts">
-      ${parted.map((strut) => html`<${Chip} on=${strut === document.strut}
-          set=${() => store.change({ type: "selected", layout: document.layout, strut })}>${strut}<//>`)}
-      ${parted.length === 0
-        ? html`<span class="quiet">The same strut everywhere.</span> <button type="button"
-          onClick=${() => store.change({ type: "strutsParted", struts: mounts })}>One for each</button>`
-        : html`<button type="button"
-          onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}
-    </div>`}<//>
-  </section>`;
+  const { across } = store.get().view;
+  return html`<section class=${`panel network ${across ? "across" : ""}`} aria-labelledby="network-title">
+    <${Editor} store=${store} api=${api} /></section>`;
 }
 
-/** @param {{store: Store, api: Api, children: any}} props */
-function Editor({ store, api, children }) {
+/** At which strut the network is that is edited; one that has another, or could have one, is chosen by its chip.
+ * @param {{store: Store}} props */
+function Struts({ store }) {
+  const state = store.get();
+  const document = state.history.present;
+  const { study: { layouts, vehicle }, layout } = document;
+  const parted = strutsOf(own(layouts, layout));
+  const [text, texts] = [textOf(document), strutTexts(state)];
+  const model = state.about?.vehicles.find((/** @type {any} */ { key }) => key === vehicle?.model);
+  /** @type {{[strut: string]: string}} */
+  const all = { ...texts, ...Object.fromEntries((model?.mounts ?? []).map((/** @type {string} */ strut) =>
+    [strut, texts[strut] ?? text])) };
+  const drawn = parted.length > 0 ? [document.strut] : Object.keys(texts).filter((strut) => texts[strut] === text);
+  const shared = drawn.length > 1 ? drawn : [];
+  /** @param {string} strut */
+  const choose = (strut) => store.change(parted.includes(strut) ? { type: "selected", layout, strut }
+    : { type: "strutsParted", texts: { ...texts, [strut]: all[strut] }, strut });
+  return Object.keys(all).length > 1 && html`<div class="row struts pad" role="group" aria-label="Struts">
+    ${shared.length > 0 && html`<span class="quiet">The same at ${strutWords(shared)}.</span> <button type="button"
+      onClick=${() => choose(/** @type {string} */ (shared[0]))}>One for each</button>`}
+    ${Object.keys(all).filter((strut) => !shared.includes(strut)).map((strut) => html`<${Chip} key=${strut}
+      on=${drawn.includes(strut)} set=${() => choose(strut)}>${strutWords([strut])}<//>`)}
+    ${parted.length > 0 && html`<button type="button"
+      onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}</div>`;
+}
+
+/** @param {{store: Store, api: Api}} props */
+function Editor({ store, api }) {
   const state = store.get();
   const document = state.history.present;
   const text = textOf(document);
@@ -69,7 +82,7 @@ function Editor({ store, api, children }) {
       ${shownTree && (state.view.across || leaves(shownTree).length > MANY)
         && html`<${Chip} on=${state.view.across} set=${() => store.look({ across: !state.view.across })}
           aria-label="Lay out wide" title="Lay out wide: over the whole page">⤢<//>`}</div>
-    ${children}
+    <${Struts} store=${store} />
     ${shownTree === null
       ? html`<p class="quiet drawing empty">No network yet: choose a part below, or write one.</p>`
       : html`<${Schematic} editing=${editing} tree=${shownTree} path=${path}

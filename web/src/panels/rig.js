@@ -3,9 +3,10 @@
 import { Doubts } from "../parts/doubts.js";
 import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
-import { Select, Table, useChoice, formHandler } from "../parts/controls.js";
+import { Select, Table, useChoice, formHandler, showNewest } from "../parts/controls.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { shown } from "../state/scale.js";
+import { strutTexts } from "../questions.js";
+import { shown, strutWords } from "../state/scale.js";
 import { Files } from "./files.js";
 import { takeFitted, tryToBegin, withheld } from "../working.js";
 import { JobHead } from "./work.js";
@@ -20,23 +21,20 @@ export function RigPanel({ store, api }) {
   const state = store.get();
   const [told, setTold] = useState("");
   const fits = Object.values(state.work).filter(({ kind }) => kind === "identify").toReversed();
-  const models = (state.about?.models ?? []).map((/** @type {any} */ model) => model.name ?? model.key ?? model);
+  const words = state.about?.model_words ?? {};
+  const models = Object.keys(words).sort((one) => (one === CHOOSE ? -1 : 1));
+  const [model = CHOOSE, setModel] = useChoice(models);
   return html`<div>
     <p class="quiet">Drop a measured record anywhere on the page (CSV, TDMS, MDF4, MATLAB), or</p>
     <label class="file">choose one <input type="file" accept=".csv,.tsv,.txt,.tdms,.mf4,.mdf,.mat" multiple
       onChange=${(/** @type {Event} */ event) => open(store, api,
         /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label>
     ${state.records.length > 0 &&
-    html`<form class="row" onSubmit=${formHandler(async (form) => setTold(await tryToBegin(store, api, {
-      kind: "identify",
-      title: `Identify ${state.records.map(({ name }) => name).join(", ")}`,
-      study: {},
-      records: state.records.map(({ id }) => id),
-      model: form.get("model"),
-    })))}>
-      <${Select} label="Model" name="model" choices=${models.map((/** @type {string} */ model) =>
-        (model === CHOOSE ? [model, "choose among all (minutes)"] : model))} />
+    html`<form class="row" onSubmit=${formHandler(async () => setTold(await fit(store, api, state.records,
+      { model })))}>
+      <${Select} label="Model" name="model" choices=${models} value=${model} set=${setModel} />
       <button class=${fits.length === 0 ? "main" : "edged"}>Identify</button>
+      <span class="quiet">${words[model]}</span>
     </form>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
     ${fits.map((job, i) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} main=${i === 0} />`)}
@@ -44,6 +42,15 @@ export function RigPanel({ store, api }) {
       ${state.records.map((record) => html`<${RecordRow} key=${record.id} store=${store} api=${api}
         record=${record} />`)}</ul>
   </div>`;
+}
+
+/** Begins a fit of records, and shows it; gives the sentence why it cannot be begun. @param {Store} store
+ * @param {Api} api @param {any[]} records @param {{model: string, config?: object}} asked @param {string} [label] */
+async function fit(store, api, records, asked, label = asked.model) {
+  const told = await tryToBegin(store, api, { kind: "identify", study: {}, records: records.map(({ id }) => id),
+    title: `Identify ${records.map(({ name }) => name).join(", ")}: ${label}`, ...asked });
+  if (!told) showNewest(".fit");
+  return told;
 }
 
 /** @param {{store: Store, api: Api, record: any}} props */
@@ -72,9 +79,10 @@ async function forget(store, api, id) {
   store.dispatch({ type: "unrecorded", id });
 }
 
-/** @param {Store} store @param {Api} api @param {any} fit */
-async function takeIn(store, api, fit) {
-  const text = await takeFitted(store, api, fit, fit.device).catch((/** @type {Error} */ error) => error.message);
+/** @param {Store} store @param {Api} api @param {any} fit @param {string} [strut] */
+async function takeIn(store, api, fit, strut) {
+  const text = await takeFitted(store, api, fit, fit.device, strut)
+    .catch((/** @type {Error} */ error) => error.message);
   store.say(text, "device");
 }
 
@@ -108,10 +116,8 @@ function Offered({ store, api, result, offer: { label, model, config = {}, ask }
     return html`<p class="quiet">${label}: drop the record of this fit on the page again.</p>`;
   return html`<form class="row" onSubmit=${formHandler(async (form) => {
     const stated = ask ? { [ask.section]: { [ask.key]: String(form.get("value")).trim() } } : config;
-    const title = `Identify ${records.map(({ name }) => name).join(", ")}: ${label}`;
-    setTold(await tryToBegin(store, api, { kind: "identify", title, study: {},
-      records: records.map(({ id }) => id), model: model ?? result.asked?.model,
-      config: mergedTables(result.asked?.config ?? {}, stated) }));
+    setTold(await fit(store, api, records, { model: model ?? result.asked?.model,
+      config: mergedTables(result.asked?.config ?? {}, stated) }, label));
   })}>
     ${ask && html`<label>${label} <input name="value" class="entry" required placeholder=${ask.example}
       autocomplete="off" spellcheck=${false} /></label>`}
@@ -128,6 +134,9 @@ const mergedTables = (some, others) => ({ ...some,
  * @param {{store: Store, api: Api, job: Job, main: boolean}} props */
 function Fit({ store, api, job, main }) {
   const { result } = job;
+  const struts = Object.keys(strutTexts(store.get()));
+  const several = struts.length > 1;
+  const words = store.get().about?.model_words?.[result?.model];
   return html`<section class="fit" data-state=${job.state}>
     <${JobHead} store=${store} api=${api} job=${job} />
     ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"}>${job.sentence}</p>`}
@@ -135,7 +144,8 @@ function Fit({ store, api, job, main }) {
     html`<${Doubts} members=${[{ of: result.model, status: result.status,
       message: result.reason }]} />
       <${Causes} store=${store} api=${api} result=${result} main=${main && !result.device} />
-      <${Table} label="Identified values" heads=${[result.model, "value", "95 % interval", ""]}>
+      <p><b>${result.model}</b>${words && `: ${words}`}</p>
+      <${Table} label="Identified values" heads=${["parameter", "value", "95 % interval", ""]}>
         ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
           <th scope="row">${name}</th>
           ${[0, 1].map((i) => html`<td class="number">${result.shown[name][i]}</td>`)}
@@ -143,8 +153,11 @@ function Fit({ store, api, job, main }) {
       <//>
       ${(result.findings ?? []).map((/** @type {string} */ each) => html`<p key=${each} class="quiet">${each}</p>`)}
       ${result.device
-        ? html`<button type="button" class=${main ? "main" : "edged"}
-          onClick=${() => void takeIn(store, api, result)}>Take the device into the editor</button>`
+        ? html`<p class="row">${several && "Take the device into the editor, in parallel with the"}
+          ${(several ? struts : [undefined]).map((strut) => html`<button type="button" key=${strut}
+            class=${main && (!several || strut === struts[0]) ? "main" : "edged"}
+            onClick=${() => void takeIn(store, api, result, strut)}>${strut ? strutWords([strut])
+              : "Take the device into the editor"}</button>`)}</p>`
         : html`<p>${withheld(result)}</p>`}
       ${(result.offers ?? []).map((/** @type {Offer} */ offer) => html`<${Offered} key=${offer.label} store=${store}
         api=${api} result=${result} offer=${offer} />`)}

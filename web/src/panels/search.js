@@ -9,9 +9,9 @@ import { isFreeNetwork, kindOf, searchedLayouts, treeOf } from "../library.js";
 import { quickMethod } from "../methods.js";
 import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
-import { goalOf } from "../questions.js";
-import { entryAt, own, strutsOf, textOf } from "../state/document.js";
-import { estimated, printed, rounded, scaled, shown, times, unitFor } from "../state/scale.js";
+import { goalOf, strutTexts } from "../questions.js";
+import { entryAt, own, textOf } from "../state/document.js";
+import { estimated, printed, rounded, scaled, shown, strutWords, times, unitFor } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indicesOf, percent } from "./answers.js";
 import { Constraints } from "./asked.js";
@@ -54,29 +54,25 @@ function carryingIn(state, text) {
  * @param {{store: Store}} props */
 export function AddFreeNetwork({ store }) {
   const state = store.get();
-  const { study, layout } = state.history.present;
-  const entry = own(study.layouts, layout);
-  const struts = strutsOf(entry);
-  const carrying = struts.filter((strut) => carryingIn(state, entry[strut]));
+  const texts = strutTexts(state);
+  const struts = Object.keys(texts);
+  const carrying = struts.filter((strut) => carryingIn(state, texts[strut]));
   /** @param {string[]} at @param {string} words */
   const button = (at, words) => html`<button type="button" class="edged remedy" key=${words}
     onClick=${() => addFreeNetwork(store, at)}>${words}</button>`;
-  if (struts.length === 0) return button([""], "Add a layout with a free network");
+  if (struts.length < 2) return button([""], "Add a layout with a free network");
   return html`Add a layout with a free network
-    ${carrying.length > 1 && button(carrying, `the same at ${inWords(carrying)}`)}
-    ${struts.map((strut) => button([strut], `at ${inWords([strut])}`))}`;
+    ${carrying.length > 1 && button(carrying, `the same at ${strutWords(carrying)}`)}
+    ${struts.map((strut) => button([strut], `at ${strutWords([strut])}`))}`;
 }
-
-/** @param {string[]} struts */
-const inWords = (struts) => struts.map((strut) => strut.replaceAll("_", " ")).join(" and ");
 
 /** Adds a layout in which these struts, or the only one, are the spring that carries the vehicle with a free network in
  * parallel, and shows what can be searched in it. @param {Store} store @param {string[]} struts */
 function addFreeNetwork(store, struts) {
   const state = store.get();
-  const { study, layout, strut } = state.history.present;
+  const { study, strut } = state.history.present;
   const [name, added] = [study.elements, study.layouts].map((table) => freshName("any", Object.keys(table ?? {})));
-  const texts = strut === null ? { "": textOf(state.history.present) } : own(study.layouts, layout);
+  const texts = struts[0] === "" ? { "": textOf(state.history.present) } : strutTexts(state);
   /** @param {string} text */
   const freed = (text) => {
     const carries = carryingIn(state, text);
@@ -124,9 +120,9 @@ function Where({ state, layout }) {
   const rows = (state.parts?.networks ?? []).filter(({ path }) => path[1] === layout && path.length > 2);
   const [free, others] = [true, false].map((is) => rows.filter(({ names = [] }) =>
     names.some((name) => isFreeNetwork(state, name)) === is).map(({ path }) => path[2]));
-  return free.length > 0 && html`<p class="quiet">Free at ${inWords(free)}${free.length > 1
+  return free.length > 0 && html`<p class="quiet">Free at ${strutWords(free)}${free.length > 1
     && ", the same network with the same values"}.${others.map((strut) =>
-    ` At ${inWords([strut])}: ${entry[strut]}.`)}</p>`;
+    ` At ${strutWords([strut])}: ${entry[strut]}.`)}</p>`;
 }
 
 /** A key of a free network that is a number or a switch, as the library declares it.

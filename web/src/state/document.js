@@ -34,7 +34,7 @@
  *  | {type: "layoutAdded", name: string}
  *  | {type: "layoutRenamed", name: string}
  *  | {type: "layoutRemoved"}
- *  | {type: "strutsParted", struts: string[]}
+ *  | {type: "strutsParted", texts: {[strut: string]: string}, strut: string}
  *  | {type: "strutsJoined"}
  *  | {type: "elementRenamed", old: string, name: string, study: Study}
  *  | {type: "elementRemoved", name: string}
@@ -112,11 +112,8 @@ const CHANGES = {
     const rest = withEntry({ ...document, values, optima }, ["layouts", layout], undefined);
     return standing(study.study?.baseline === layout ? withEntry(rest, ["study", "baseline"], undefined) : rest);
   },
-  strutsParted: (document, { struts }) => {
-    const text = textOf(document);
-    const each = Object.fromEntries(struts.map((/** @type {string} */ strut) => [strut, text]));
-    return standing(withEntry({ ...document, strut: struts[0] }, ["layouts", document.layout], each));
-  },
+  strutsParted: (document, { texts, strut }) =>
+    standing(withEntry({ ...document, strut }, ["layouts", document.layout], texts)),
   strutsJoined: (document) =>
     withEntry({ ...document, strut: null }, ["layouts", document.layout], textOf(document)),
   elementRenamed: (document, { old, name, study }) => elementRenamed(document, old, name, study),

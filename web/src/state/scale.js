@@ -153,3 +153,6 @@ export const times = (value, factor) => (typeof value === "number" ? value * fac
 /** What a number is, with its unit in brackets if it has one.
  * @param {string} what @param {string | null | undefined} unit */
 export const withUnit = (what, unit) => (unit ? `${what} [${printed(unit)}]` : what);
+
+/** Struts in words. @param {(string | null)[]} struts */
+export const strutWords = (struts) => struts.join(" and ").replaceAll("_", " ");

@@ -39,6 +39,7 @@ NO_UNITS: dict[str, str] = {}
 NO_ELEMENTS: dict[str, Any] = {}
 ROLES = ("displacement", "force", "time", "velocity", "acceleration")
 CHOOSE = "choose"  # between all models
+CHOOSE_WORDS = "fits all models, and selects the simplest of those that predict best; takes a minute or two"
 GAPS = ("refuse", "fill", "longest")
 _MOST_STARTS = 4096
 

@@ -1,5 +1,6 @@
 // What outlives a moment: the link that holds the state, the tab's own memory, files that are opened and downloaded.
 
+import { showNewest } from "./parts/controls.js";
 import { baselineOf } from "./questions.js";
 import { empty } from "./state/document.js";
 import { initial } from "./state/store.js";
@@ -208,6 +209,7 @@ async function openRecord(store, api, file) {
   const blank = Object.keys(store.get().history.present.study).length === 0;
   if (blank && (await beginWith(store, api, (await api.get(`examples/${FOR_RECORDS}`)).study)))
     store.change({ type: "selected", layout: baselineOf(store.get().history.present).layout }); // the device joins it
+  showNewest(".tabs");
   store.say(`${file.name} was read.${blank ? " A quarter car is open for its device: see Rig." : ""}`, file.name);
 }
 

@@ -99,6 +99,7 @@ function atBounds({ active_bounds: bounds }) {
 export async function openStudy(store, api, study) {
   const gesture = `open ${Date.now()}`;
   store.change({ type: "opened", study }, gesture);
+  globalThis.scrollTo?.(0, 0);
   await beginAtBest(store, api, gesture, true);
   return store.get().history.present.study === study;
 }
@@ -228,7 +229,7 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }, st
   const text = before ? `${before} | ${network.text}` : network.text;
   store.change({ type: "drawn", text, added: device.elements }, gesture);
   store.dispatch({ type: "rested" });
-  return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut ?? "strut"])} of ${
+  return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut || "strut"])} of ${
     document.layout}. To join another strut: undo, select its layout, take the device again.`;
 }
 

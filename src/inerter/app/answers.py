@@ -22,7 +22,7 @@ from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.responses import IndexResponse, index_responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
-from inerter.formatting import in_words
+from inerter.formatting import in_words, typeset
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Inerter, Spring
@@ -184,7 +184,7 @@ def optimum(
     tell(len(found), len(every), "")
     return {
         "designs": [_describe_outcome(study, outcome) for outcome in found.values()],
-        "at_speeds": asdict(_at_speeds(asked, found)),
+        "at_speeds": {key: [*map(typeset, told)] for key, told in asdict(_at_speeds(asked, found)).items()},
     }
 
 

@@ -121,7 +121,7 @@ function Offered({ store, api, result, offer: { label, model, config = {}, ask }
   })}>
     ${ask && html`<label>${label} <input name="value" class="entry" required placeholder=${ask.example}
       autocomplete="off" spellcheck=${false} /></label>`}
-    <button class=${main ? "main" : ""}>${ask ? "Fit again" : label}</button>
+    <button class=${main ? "main" : "edged"}>${ask ? "Fit again" : label}</button>
     ${told && html`<span class="problem" role="alert">${told}</span>`}</form>`;
 }
 

@@ -35,6 +35,7 @@ from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
+from inerter.formatting import typeset
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.speeds import speed_sentences
 from inerter.report.study_data import as_text
@@ -119,10 +120,10 @@ def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
     ).replace("quarter-car", "half-car")
     study = load_text(tmp_path, text)
     results = dataset(study, {case: run_case(study, case) for case in cases(study)})
-    expected = asdict(speed_sentences(results))
+    expected = {key: [*map(typeset, told)] for key, told in asdict(speed_sentences(results)).items()}
     (sentence,) = expected["doubts"] + expected["others"]
     assert sentence.count("km/h") >= 3
-    assert sentence in conclusion_sentences(results, study)
+    assert sentence in map(typeset, conclusion_sentences(results, study))
     document = tomllib.loads(text)
     panel = ask(client, "panel/optimise", study=document)
     work = ask(client, "work", kind="optimise", study=document, wait=30)["result"]

@@ -230,7 +230,7 @@ def test_a_limit_on_several_struts_names_none_of_them(visitor: Visitor) -> None:
     asked.locator("[name=value]").fill("5 mm")
     asked.get_by_role("button", name="Add").click()
     page.locator(".limits li", has_text="front strut, at most 5 mm").wait_for()
-    asked.get_by_label("suspension travel at most", exact=True).wait_for()
+    asked.get_by_label("r.m.s. suspension travel, each strut, at most", exact=True).wait_for()
 
 
 def test_all_is_wrong_at_its_place_in_a_long_text(visitor: Visitor) -> None:

@@ -72,11 +72,11 @@ export function Constraints({ store }) {
           onClick=${() => place(limit, undefined)}>Delete</button></p>`;
     })}
     <div class="row">
-      <${Select} label="Add one on" value=${of} set=${setOf} choices=${choices} />
-      <${Select} aria-label="Which side" value=${sense} set=${setSense}
+      <${Select} label="Add one on" name="of" value=${of} set=${setOf} choices=${choices} />
+      <${Select} aria-label="Which side" name="sense" value=${sense} set=${setSense}
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
-      <input class="entry" aria-label="How much, with its unit" placeholder=${unit ? `in ${printed(unit)}` : "how much"}
-        autocomplete="off" value=${value} onInput=${textHandler(setValue)}
+      <input class="entry" name="value" aria-label="How much, with its unit" autocomplete="off"
+        placeholder=${unit ? `in ${printed(unit)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
         onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />
       <button type="button" class="edged" onClick=${add}>Add</button>
     </div>`;

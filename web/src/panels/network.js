@@ -51,7 +51,9 @@ function Struts({ store }) {
     ${shared.length > 0 && html`<span class="quiet">The same at ${strutWords(shared)}.</span> <button type="button"
       onClick=${() => choose(/** @type {string} */ (shared[0]))}>One for each</button>`}
     ${Object.keys(all).filter((strut) => !shared.includes(strut)).map((strut) => html`<${Chip} key=${strut}
-      on=${drawn.includes(strut)} set=${() => choose(strut)}>${strutWords([strut])}<//>`)}
+      on=${drawn.includes(strut)} set=${() => choose(strut)}
+      title=${strut in texts ? undefined : "Like this one at first"}>${strut in texts ? "" : "+ "}${
+        strutWords([strut])}<//>`)}
     ${parted.length > 0 && html`<button type="button"
       onClick=${() => store.change({ type: "strutsJoined" })}>This one everywhere</button>`}</div>`;
 }

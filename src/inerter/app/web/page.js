@@ -173,11 +173,11 @@ ${new XMLSerializer().serializeToString(n)}
         <button type="button" aria-label=${`Delete the limit: ${$}`}
           onClick=${()=>u(d,void 0)}>Delete</button></p>`})}
     <div class="row">
-      <${j} label="Add one on" value=${o} set=${s} choices=${n} />
-      <${j} aria-label="Which side" value=${r} set=${i}
+      <${j} label="Add one on" name="of" value=${o} set=${s} choices=${n} />
+      <${j} aria-label="Which side" name="sense" value=${r} set=${i}
         choices=${Ha.map(d=>[d,d.replace("_"," ")])} />
-      <input class="entry" aria-label="How much, with its unit" placeholder=${h?`in ${P(h)}`:"how much"}
-        autocomplete="off" value=${a} onInput=${ft(l)}
+      <input class="entry" name="value" aria-label="How much, with its unit" autocomplete="off"
+        placeholder=${h?`in ${P(h)}`:"how much"} value=${a} onInput=${ft(l)}
         onKeyDown=${({key:d})=>d==="Enter"&&p()} />
       <button type="button" class="edged" onClick=${p}>Add</button>
     </div>`}function Ua({store:t,index:e}){let n=t.get(),{study:o}=n.history.present,s=E(o.indices,e)!==void 0,{choices:r=[],settings:i=[]}=go(n,e)??{},a=u=>Z(o,["indices",e,u])??Z(o,["study",u])??"",l=u=>p=>t.change({type:"placed",place:s?["indices",e,u]:["study",u],value:p||void 0}),c=u=>s?l(u):p=>qd(t,e,u,p);return[...r,...i].map(({key:u,sentence:p,options:h,example:d})=>f`<p
@@ -521,7 +521,8 @@ ${new XMLSerializer().serializeToString(n)}
     ${h.length>0&&f`<span class="quiet">The same at ${xt(h)}.</span> <button type="button"
       onClick=${()=>d(h[0])}>One for each</button>`}
     ${Object.keys(u).filter(m=>!h.includes(m)).map(m=>f`<${V} key=${m}
-      on=${p.includes(m)} set=${()=>d(m)}>${xt([m])}<//>`)}
+      on=${p.includes(m)} set=${()=>d(m)}
+      title=${m in l?void 0:"Like this one at first"}>${m in l?"":"+ "}${xt([m])}<//>`)}
     ${i.length>0&&f`<button type="button"
       onClick=${()=>t.change({type:"strutsJoined"})}>This one everywhere</button>`}</div>`}function oh({store:t,api:e}){let n=t.get(),o=n.history.present,s=lt(o),r=Ht(n,s),[i,a]=M({tree:null,of:""}),l=JSON.stringify([o.study.title,o.layout,o.strut]),[c,u]=M("series");F(()=>{(r!==null||s.trim()==="")&&a({tree:r,of:l})},[r,l]);let p=r??(s.trim()!==""&&i.of===l?i.tree:null),h=Nl(p,n),d=p&&it(p,h),m={store:t,api:e,how:c},$=r===null&&s.trim()!=="";return f`<div class="head"><h2 id="network-title">Strut ${o.layout}</h2>
       <div class="segmented" role="group" aria-label="How a part is joined to what is selected">

@@ -62,6 +62,8 @@ def test_of_a_study_with_conditions_the_vehicle_is_that_of_the_file(
     assert "those of the file itself, not of one of its conditions" in " ".join(capsys.readouterr().err.split())
     assert call(["export", "real.toml", "--to", "matlab", "--linear", "-o", "real.mat"]) == 0
     assert "conditions" not in capsys.readouterr().err
+    titles = {name: str(scipy.io.loadmat(folder / f"{name}.mat")["title"][0]) for name in ("loads", "real")}
+    assert titles["loads"] == f"{titles['real']}, with the numbers outside the conditions"
     one, other = (scipy.io.loadmat(folder / f"{name}.mat") for name in ("loads", "real"))
     assert np.array_equal(one["A"], other["A"])
 

@@ -43,7 +43,8 @@ def export(
         name = "-".join([stem, design.name, *([part] if part else [])])
         path = output or Path(f"{name}{kind.suffixes[0]}")
         check_single(path, by=_BY, inputs=design.inputs, force=force)
-        title = ", ".join([" ".join(design.study.title.split()), design.case.name, *([part] if part else [])])
+        numbers = ["with the numbers outside the conditions"] if design.study.conditions else []
+        names = [" ".join(design.study.title.split()), design.case.name, *([part] if part else []), *numbers]
         indices = {design.case.index: design.study.index(design.case.index)}
         request = ExportSpec(
             design.vehicle(),
@@ -52,7 +53,7 @@ def export(
             speed=None if speed is None else positive_option("speed", speed, "m/s"),
             indices=indices,
             conventions=design.study.conventions,
-            title=title,
+            title=", ".join(names),
         )
         contents = export_contents(kind, request, path)
         with single(path, by=_BY, inputs=design.inputs, force=force) as draft:

@@ -49,6 +49,24 @@ def test_every_example_is_sound(example: Path, capsys: pytest.CaptureFixture[str
     assert max(map(len, out.splitlines())) <= max(80, len(str(example)) + 8)
 
 
+def test_several_files_are_checked_and_each_wrong_one_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for folder, text in {"a": SIMULATION, "b": SIMULATION.replace("duration", "durations"), "c": RIG}.items():
+        Path(folder).mkdir()
+        Path(folder, "file.toml").write_text(text, encoding="utf-8")
+    files = ["a/file.toml", "b/file.toml", "none.toml", "c/file.toml"]
+    assert call(["check", *files]) == 2
+    out, err = capsys.readouterr()
+    assert [line.partition(": ")[0] for line in out.splitlines() if ": ok. " in line] == ["a/file.toml", "c/file.toml"]
+    first, *lines = err.splitlines()
+    assert first == "inerter: b/file.toml:"
+    assert lines[0].startswith("file.toml: simulation.duration")
+    assert lines[-1].startswith("inerter: none.toml: file not found")
+    assert call(["check", "a/file.toml", "c/file.toml"]) == 0
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -122,19 +122,22 @@ def search(
 @app.command(
     help_epilogue="""Examples:
   inerter check examples/half-car.toml
-  inerter check examples/stick_slip.toml"""
+  inerter check examples/stick_slip.toml
+  inerter check studies/*.toml"""
 )
-def check(file: Path, /) -> None:
-    """Check a file: keys, units, bounds, networks, and whether every layout can be analysed or simulated.
+def check(file: Path, /, *more: Path) -> tuple[Statement, ...]:
+    """Check files: keys, units, bounds, networks, and whether every layout can be analysed or simulated.
 
     Parameters
     ----------
     file
         A study, simulation, rig or identification file (TOML), distinguished by its sections.
+    more
+        Further files; the exit code is 2 if any of them cannot be used.
     """
     from inerter.cli.check import check as command
 
-    command(file)
+    return command([file, *more])
 
 
 @app.command(

@@ -25,7 +25,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import Output
 from inerter.systems.piecewise import PiecewiseSystem
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
 _STUCK = 1e4  # times a typical damper is as good as stuck: more would only cost digits
@@ -46,8 +46,13 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
 
 def has_play(system: PiecewiseSystem) -> bool:
     """Whether an element switches that no damper represents, as a gap."""
-    elements = (b.element for b in system.graph.branches)
-    return any(e.acts and not e.is_damped for e in elements)
+    return bool(mounts_with_play(system))
+
+
+def mounts_with_play(system: PiecewiseSystem) -> list[Strut | Tyre]:
+    """Mounts with an element that switches and that no damper represents, as a gap."""
+    mounts = system.mechanism.mounts()
+    return [mount for mount in mounts if any(e.acts and not e.is_damped for e in mount.network.elements())]
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +142,7 @@ class ModalShares:
 
         `change` is that of the mean square if all frictions slip twice as fast.
         """
-        return _PEAKED * change * self.over_lines(period)
+        return lower_peaks(change, self.over_lines(period))
 
     def over_lines(self, period: float) -> float:
         """Largest sum of the shares in a mean square, each over the number of lines 1/T Hz apart in its resonance.
@@ -151,8 +156,17 @@ class ModalShares:
         return float((np.minimum(self.shares, 1.0) / lines).sum(axis=1).max(initial=0.0))
 
 
+def lower_peaks(change: float, over_lines: float) -> float:
+    """Share of a mean square by which it may be off, as lines have lower peaks than a random motion.
+
+    `change` is its relative change when the motion is twice as large, `over_lines` one over the number of lines in a
+    resonance.
+    """
+    return _PEAKED * change * over_lines
+
+
 def few_lines(share: float) -> ErrorSource:
-    """Error source of an r.m.s. value whose mean square may be off by a `share` (see `ModalShares.lower_peaks`)."""
+    """Error source of an r.m.s. value whose mean square may be off by a `share` (see `lower_peaks`)."""
     return ErrorSource("few lines in a resonance", 0.5 * share)
 
 

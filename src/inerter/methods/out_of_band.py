@@ -20,7 +20,9 @@ from inerter.methods.equivalent_linear import (
     equivalent_linear_model,
     few_lines,
     has_play,
+    lower_peaks,
     modal_shares,
+    mounts_with_play,
     relative_change,
     with_velocities,
 )
@@ -41,6 +43,7 @@ from inerter.methods.realisations import (
 from inerter.methods.steady_squares import mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
+from inerter.systems.outputs import of_mount
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.work.running import map_items
 
@@ -53,7 +56,8 @@ _FIRST = 2  # roads that decide how long the others must be
 _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside the band
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
-_MOST_PEAKED = 0.01  # of a mean square, without a longer road
+_MOST_PEAKED = 0.01  # of a mean square, without a longer road ...
+_MOST_PEAKED_BY_PLAY = 0.015  # ... with backlash, where the roads needed for this are slow
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _IMAGES_WITHIN = 1e-8  # of the largest response to images, which are a per cent of any line, or less
@@ -66,10 +70,14 @@ _FEW = 3  # periods after which a motion with play must repeat, or the period is
 
 @dataclass(frozen=True, eq=False)
 class OnRoads:
-    """A design and a question, on roads of one length; `frictions` names the velocities across its frictions."""
+    """A design and a question, on roads of one length.
+
+    `frictions` names the velocities across its frictions, `play` the travels of mounts with backlash.
+    """
 
     system: PiecewiseSystem
     frictions: tuple[str, ...]
+    play: tuple[str, ...]
     definition: IndexDefinition
     excitation: RandomExcitation
     linear: EquivalentLinearModel | None
@@ -86,11 +94,17 @@ class OnRoads:
         """Factor of each output's r.m.s. value in the index."""
         return np.array([abs(output.weight) for output in self.definition.outputs])
 
-    def runs(self, first: int, stop: int, pool: Executor) -> list[RoadRun]:
-        """Results of the realisations `first`, ..., `stop` - 1."""
+    def runs(self, first: int, stop: int, pool: Executor, *, spectra: bool = False) -> list[RoadRun]:
+        """Results of the realisations `first`, ..., `stop` - 1, with the number of spectral lines if `spectra`."""
         seeds = realisation_seeds(self.seed, first, stop)
-        outputs = (*self.outputs, *self.frictions)
-        return map_items(partial(run, self.system, self.excitation, outputs, self.definition.filters), seeds, pool.map)
+        outputs, filters = (*self.outputs, *self.frictions, *self.play), self.definition.filters
+        on_road = partial(run, self.system, self.excitation, outputs, filters, spectra=spectra)
+        return map_items(on_road, seeds, pool.map)
+
+    def on_higher_roads(self) -> OnRoads:
+        """The design on the same roads, twice as high."""
+        road = self.excitation.road
+        return replace(self, excitation=replace(self.excitation, road=replace(road, roughness=4.0 * road.roughness)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,10 +128,11 @@ def on_roads(
     excitation = random_excitation(system, definition, conventions, period)
     check_held_roads(system, excitation)
     if excitation.hold is not None:
-        return OnRoads(system, (), definition, excitation, None, seed, LONGEST)
+        return OnRoads(system, (), (), definition, excitation, None, seed, LONGEST)
     linear = equivalent_linear_model(system.mechanism, definition, conventions)
     longest = LONGEST if period is None else excitation.period
-    return OnRoads(*with_velocities(system), definition, excitation, linear, seed, longest)
+    play = tuple(of_mount(mount)[1] for mount in mounts_with_play(system))
+    return OnRoads(*with_velocities(system), play, definition, excitation, linear, seed, longest)
 
 
 def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], OutOfBandContribution]:
@@ -132,7 +147,8 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun]
         if _LONGER * longer.excitation.period > design.longest or (longer is not design and not missing.within_reach):
             return usual
         longer, found, missing = _first_runs(_on_longer_roads(longer), pool)
-    while missing.peaked > _MOST_PEAKED and _LONGER * longer.excitation.period <= design.longest:
+    most = _MOST_PEAKED_BY_PLAY if design.play else _MOST_PEAKED
+    while missing.peaked > most and _LONGER * longer.excitation.period <= design.longest:
         tried = _first_runs(_on_longer_roads(longer), pool)
         if not (np.all(np.isfinite(tried[2].power)) and _is_resolved(*tried)):
             break
@@ -141,8 +157,26 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun]
 
 
 def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], OutOfBandContribution]:
-    found = design.runs(0, _FIRST, pool)
-    return design, found, out_of_band_contribution(design, found)
+    found = design.runs(0, _FIRST, pool, spectra=bool(design.play))
+    missing = out_of_band_contribution(design, found)
+    if design.play and all(ran.status.ok for ran in found):
+        peaked = _peaked_by_play(design, found, design.on_higher_roads().runs(0, _FIRST, pool))
+        missing = replace(missing, peaked=float(np.maximum(missing.peaked, peaked)))
+    return design, found, missing
+
+
+def _peaked_by_play(design: OnRoads, found: Sequence[RoadRun], higher: Sequence[RoadRun]) -> float:
+    """Share of a mean square by which it may be off with backlash, as lines have lower peaks than a random road.
+
+    No linear model tells which resonance a gap changes, nor how wide that is: the change of the response is that of
+    the motion on roads twice as high, and the lines are those over which the travel spreads on the roads themselves.
+    """
+    count, first = len(design.outputs), len(design.outputs) + len(design.frictions)
+    power, there = (np.mean([ran.power[:count] for ran in runs], axis=0) for runs in (found, higher))
+    over_lines = np.mean([1.0 / ran.lines[first:] for ran in found], axis=0)
+    moving = power > 0.0
+    change = np.abs(there[moving] / (4.0 * power[moving]) - 1.0).max(initial=0.0)
+    return lower_peaks(float(change), float(over_lines.max()))
 
 
 def _on_longer_roads(design: OnRoads) -> OnRoads:
@@ -171,7 +205,7 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     power = np.mean([ran.power for ran in found], axis=0)
     if not np.all(np.isfinite(power)):
         return OutOfBandContribution(np.full(count, np.nan))
-    speeds = np.sqrt(power[count:])
+    speeds = np.sqrt(power[count : count + len(design.frictions)])
     system = linear.system(speeds)
     pade_order = linear.problem.pade_order
     whole = h2(system, pade_order)

@@ -103,6 +103,7 @@ class RoadRun:
     status: Status
     steady: PeriodicState
     jumps: Array  # what samples may miss of the r.m.s. values, relative to them
+    lines: Array  # number of spectral lines over which each motion spreads; nan without a spectrum
 
 
 def random_excitation(
@@ -156,12 +157,14 @@ def run(
     outputs: Sequence[str],
     filters: Sequence[Filter | None],
     seed: int,
+    *,
+    spectra: bool = False,
 ) -> RoadRun:
     """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
     inputs = table(excitation, seed)
     state = initial_state(system, inputs.value[0], "rest")
     most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / excitation.period))
-    return RoadRun(*steady_squares(system, inputs, outputs, filters, state, most))
+    return RoadRun(*steady_squares(system, inputs, outputs, filters, state, most, spectra=spectra))
 
 
 def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:

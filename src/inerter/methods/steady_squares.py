@@ -24,13 +24,15 @@ _DEVIATIONS = 4.0  # standard deviations of the error by jumps between samples t
 class Squares(NamedTuple):
     """Mean squares of outputs over a period, how far to trust them, and how well the motion repeats.
 
-    `jumps` is what samples may miss of each r.m.s. value, relative to it, where friction turns between them.
+    `jumps` is what samples may miss of each r.m.s. value, relative to it, where friction turns between them. `lines` is
+    the number of spectral lines over which each motion spreads: of equal ones their number, nan without a spectrum.
     """
 
     power: Array
     status: Status
     steady: PeriodicState
     jumps: Array
+    lines: Array
 
 
 def steady_state_error(found: Sequence[PeriodicState], peaks: float) -> ErrorSource:
@@ -46,20 +48,23 @@ def steady_squares(
     state: Array,
     most: int = FEW_PERIODS,
     about_mean: bool = False,
+    spectra: bool = False,
     **repeats: float,
 ) -> Squares:
     """Mean squares over the period of `table` once the motion repeats, of deviations from the mean if `about_mean`.
 
+    With `spectra` also the number of spectral lines of each output.
     Otherwise they are of deviations from static equilibrium, which a constant force such as a preload moves. The first
     outputs pass through `filters`, in the frequency domain: as they do once the filters have settled too.
     """
     at_rest = None if about_mean else outputs_at_rest(system, outputs)
-    if not (about_mean or any(filters) or at_rest is not None):
+    if not (about_mean or spectra or any(filters) or at_rest is not None):
         found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
         if not integration.status.ok:
             return _nan_squares(len(outputs), integration.status, steady)
-        return Squares(found, integration.warning, steady, missed_by_samples(integration, outputs, np.sqrt(found)))
-    integration, steady = settle(system, table, state, energy=False)
+        jumps = missed_by_samples(integration, outputs, np.sqrt(found))
+        return Squares(found, integration.warning, steady, jumps, np.full(len(outputs), np.nan))
+    integration, steady = settle(system, table, state, energy=False, most=most)
     integration.advance(table.time.size - 1)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
@@ -80,12 +85,13 @@ def steady_squares(
     again = np.sqrt((lines * passed).sum(axis=1)) / count
     with np.errstate(divide="ignore", invalid="ignore"):
         jumps = missed_by_samples(integration, outputs, power / again)
-    return Squares(power, trajectory.status, steady, jumps)
+        spread = lines[:, 1:].sum(axis=1) ** 2 / (lines[:, 1:] ** 2).sum(axis=1)
+    return Squares(power, trajectory.status, steady, jumps, spread)
 
 
 def _nan_squares(count: int, status: Status, steady: PeriodicState) -> Squares:
     nothing = np.full(count, np.nan)
-    return Squares(nothing, status, steady, nothing)
+    return Squares(nothing, status, steady, nothing, nothing)
 
 
 def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:

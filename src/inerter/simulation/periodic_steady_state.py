@@ -74,11 +74,11 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
 
 
 def settle(
-    system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool
+    system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool, most: int = _PERIODS
 ) -> tuple[Integration, PeriodicState]:
-    """Repeat one period until the state repeats; an integration at the start of the one to record."""
+    """Repeat one period until the state repeats, at most `most` times; an integration at the start of the next one."""
     again = table.repeating
-    quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, _PERIODS)
+    quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, most)
     recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
     recorded.status = quick.status
     if quick.status.ok and settled.mismatch > _ENOUGH:

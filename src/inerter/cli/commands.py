@@ -11,8 +11,9 @@ from inerter.cli.cluster import workers
 from inerter.cli.interrupts import interruptible
 from inerter.cli.options import WorkOptions
 from inerter.cli.pace import Pace
-from inerter.cli.progress import progress, steps
+from inerter.cli.progress import steps
 from inerter.cli.streams import say
+from inerter.cli.study_work import study_work
 from inerter.files.common.folder import REPORT
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
@@ -37,26 +38,9 @@ def run(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     """Run a study file into a folder; returns its status."""
     loaded = load_study(study)
     folder = options.output or Path(f"{study.stem}-results")
-    own = options.processes
-
-    kept = options.continuation_clause(("run", str(study)), folder)
     items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
-    with (
-        interruptible(lambda: kept),
-        workers(options.cluster, options.jobs) as executor,
-        progress(items, executor, _pace(loaded)) as shown,
-    ):
-        result = run_study(
-            loaded,
-            folder,
-            jobs=own,
-            executor=executor,
-            resume=options.resume,
-            force=options.force,
-            progress=shown.cases,
-            compiling=shown.kernels,
-            finish=write_figures_and_report,
-        )
+    with study_work(("run", str(study)), folder, options, items, _pace(loaded)) as settings:
+        result = run_study(loaded, folder, finish=write_figures_and_report, **settings)
     say(f"report: {folder / REPORT}")
     if options.json:
         for text in as_text(result):

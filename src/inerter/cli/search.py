@@ -5,11 +5,9 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from inerter.cli.cluster import workers
-from inerter.cli.interrupts import interruptible
 from inerter.cli.options import WorkOptions
-from inerter.cli.progress import progress
 from inerter.cli.streams import say
+from inerter.cli.study_work import study_work
 from inerter.files.common.folder import REPORT
 from inerter.files.study.loading import load_study
 from inerter.files.study.searching import StudySearch, search_study
@@ -22,25 +20,8 @@ def search(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     """Search the networks of a study file into a folder; returns its status."""
     loaded = load_study(study)
     folder = options.output or Path(f"{study.stem}-search")
-    own = options.processes
-
-    kept = options.continuation_clause(("search", str(study)), folder)
-    with (
-        interruptible(lambda: kept),
-        workers(options.cluster, options.jobs) as executor,
-        progress("networks", executor) as shown,
-    ):
-        found = search_study(
-            loaded,
-            folder,
-            jobs=own,
-            executor=executor,
-            resume=options.resume,
-            force=options.force,
-            progress=shown.cases,
-            compiling=shown.kernels,
-            finish=write_search_report,
-        )
+    with study_work(("search", str(study)), folder, options, "networks") as settings:
+        found = search_study(loaded, folder, finish=write_search_report, **settings)
     say(f"report: {folder / REPORT}")
     print(json.dumps(search_data(found), indent=2) if options.json else _text(found))
     return (found.status,)

@@ -173,7 +173,7 @@ def _descriptor(d: Descriptor) -> NamedSystem:
     """The equations of the descriptor with its unknowns as further states, which have no rates."""
     if d.precision_warning:
         raise LinearSystemError(d.precision_warning)
-    S, R, F, Y_eta, Y_x, Y_u = (stack[0].astype(float) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S, R, F, Y_eta, Y_x, Y_u = (stack[0].astype(float) for stack in d.stacks)
     n, e = R.shape[1], S.shape[0]
     named = zip(d.states, state_units(d), strict=True)
     states = tuple(NamedQuantity(*one) for one in (*named, *unknowns(d)))

@@ -15,7 +15,7 @@ tyre's elongation is a state and the road's velocity the input, which makes J1 a
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache, partial
 from itertools import accumulate, pairwise
@@ -86,6 +86,16 @@ class Descriptor:
     sums: Mapping[str, Sum] = field(default_factory=dict)  # of what each input is made, if not itself (see `arrivals`)
     precision_warning: str = ""  # why digits of the matrices are uncertain; empty where they are certain
 
+    @property
+    def stacks(self) -> tuple[Matrix, ...]:
+        """S, R, F, Y_eta, Y_x and Y_u, which are affine in the free values."""
+        return self.S, self.R, self.F, self.Y_eta, self.Y_x, self.Y_u
+
+    def with_stacks(self, stacks: Iterable[Matrix], sizes: Iterable[Matrix], **others: Any) -> Descriptor:
+        """Copy with other stacks, their sizes, and other attributes by name."""
+        S, R, F, Y_eta, Y_x, Y_u = stacks
+        return replace(self, S=S, R=R, F=F, Y_eta=Y_eta, Y_x=Y_x, Y_u=Y_u, sizes=tuple(sizes), **others)
+
 
 def close(
     descriptor: Descriptor,
@@ -104,7 +114,7 @@ def close(
         )
     p = np.array([1.0, *(values[name] for name in descriptor.free)], dtype=np.longdouble)
     d, rounded = descriptor, p.astype(float)
-    S, R, F, Y_eta, Y_x, Y_u = [_sum_stack(p, stack) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u)]
+    S, R, F, Y_eta, Y_x, Y_u = [_sum_stack(p, stack) for stack in d.stacks]
     S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = [_sum_stack(rounded, stack) for stack in d.sizes]
     T, T_error = _solve_extended(S, _beside(R, F), S_size, _beside(R_size, F_size))
     X, Y = _beside(d.X_x, d.X_u), _beside(Y_x, Y_u)
@@ -265,7 +275,7 @@ def _describe_structure(structure: Structure, inputs: Names, outputs: Names) -> 
     order = [0, *(1 + list(d.free).index(name) for name in names)]
     joined = (
         np.concatenate([stack[order].reshape(len(order), -1) for stack in stacks], axis=1)
-        for stacks in ((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), d.sizes)
+        for stacks in (d.stacks, d.sizes)
     )
     return _ParametricDescriptor(d, names, *joined)
 
@@ -281,18 +291,10 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
     for i, value in enumerate(chosen, start=1):
         place, factor = (places[str(value.name)], 1.0) if isinstance(value, Free) else (0, value)
         weights[place, i] = factor
-    S, R, F, Y_eta, Y_x, Y_u = layout.split_stacks(weights @ layout.stacks)
-    sizes = layout.split_stacks(weights.astype(float) @ layout.sizes)
-    return replace(
-        d,
-        S=S,
-        R=R,
-        F=F,
-        Y_eta=Y_eta,
-        Y_x=Y_x,
-        Y_u=Y_u,
+    return d.with_stacks(
+        layout.split_stacks(weights @ layout.stacks),
+        layout.split_stacks(weights.astype(float) @ layout.sizes),
         free=free,
-        sizes=sizes,
         mechanism=structure.mechanism,
         parameters=dict(zip(layout.parameters, chosen, strict=True)),
     )

@@ -105,21 +105,14 @@ def apply_excitation(descriptor: Descriptor, paths: Sequence[InputPath]) -> Desc
     n = len(X_x)
     reached = [(i, d.inputs.index(a.input), a) for i, a in zip(at, paths, strict=True)]
     wired = _FilterChains(reached, chains, places, len(columns), n)
-    S, R, F, Y_eta, Y_x, Y_u = wired.stacks((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
-    return replace(
-        d,
-        S=S,
-        R=R,
-        F=F,
+    return d.with_stacks(
+        wired.stacks(d.stacks),
+        wired.stacks(d.sizes, sizes=True),
         X_eta=X_eta,
         X_x=X_x,
         X_u=np.zeros((n, len(columns))),
-        Y_eta=Y_eta,
-        Y_x=Y_x,
-        Y_u=Y_u,
         states=(*d.states, *(f"filter_{i}_{k}" for i, (_, f) in enumerate(chains, 1) for k in range(1, f.order + 1))),
         inputs=tuple(name for name, *_ in columns),
-        sizes=wired.stacks(d.sizes, sizes=True),
         sums=sums,
     )
 
@@ -194,11 +187,11 @@ def _by_displacement(d: Descriptor, names: set[str]) -> Descriptor:
         return d
     _check_proper(d, columns)
     more = d.S.shape[1] if np.any(d.F[:, :, columns]) else 0
-    S, R, F, Y_eta, Y_x, Y_u = _driven_by_displacement(d, (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), columns, more)
-    sizes = tuple(_driven_by_displacement(d, d.sizes, columns, more, sizes=True))
+    stacks = _driven_by_displacement(d, d.stacks, columns, more)
+    sizes = _driven_by_displacement(d, d.sizes, columns, more, sizes=True)
     X_eta, X_u = np.concatenate((d.X_eta, (d.X_x @ d.X_eta)[:, :more]), axis=1), d.X_u.copy()
     X_u[:, columns] = d.X_x @ d.X_u[:, columns]
-    return replace(d, S=S, R=R, F=F, X_eta=X_eta, X_u=X_u, Y_eta=Y_eta, Y_x=Y_x, Y_u=Y_u, sizes=sizes)
+    return d.with_stacks(stacks, sizes, X_eta=X_eta, X_u=X_u)
 
 
 def _check_proper(d: Descriptor, columns: Sequence[int]) -> None:

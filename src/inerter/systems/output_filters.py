@@ -8,7 +8,6 @@ were given, and what an output owes to the free values stays affine in them.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,21 +29,14 @@ def with_output_filters(descriptor: Descriptor, filters: Sequence[Filter | None]
     places = [(i, f, at) for (i, f), at in zip(chosen, slices, strict=True)]
     states = len(X_x)
     X_u = np.concatenate((d.X_u, np.zeros((states - n, d.X_u.shape[1]))))
-    S, R, F, Y_eta, Y_x, Y_u = _with_equations((d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u), places, states)
     names = [f"{d.outputs[i]}_filter_{k + 1}" for i, f, _ in places for k in range(f.order)]
-    return replace(
-        d,
-        S=S,
-        R=R,
-        F=F,
+    return d.with_stacks(
+        _with_equations(d.stacks, places, states),
+        _with_equations(d.sizes, places, states, sizes=True),
         X_eta=X_eta,
         X_x=X_x,
         X_u=X_u,
-        Y_eta=Y_eta,
-        Y_x=Y_x,
-        Y_u=Y_u,
         states=(*d.states, *names),
-        sizes=_with_equations(d.sizes, places, states, sizes=True),
         filters=tuple(filters),
     )
 

@@ -85,7 +85,7 @@ def mass_name(coordinate: str, angle: bool) -> str:
 
 
 def _join(d: Descriptor, parameters: tuple[FmuParameter, ...]) -> Equations:
-    S, R, F, Y_eta, Y_x, Y_u = (stack.astype(float) for stack in (d.S, d.R, d.F, d.Y_eta, d.Y_x, d.Y_u))
+    S, R, F, Y_eta, Y_x, Y_u = (stack.astype(float) for stack in d.stacks)
     rates = np.zeros((len(S), d.X_x.shape[0], S.shape[2] + R.shape[2] + F.shape[2]))
     rates[0] = np.hstack([d.X_eta, d.X_x, d.X_u])
     balance = np.concatenate([S, -R, -F], axis=2)

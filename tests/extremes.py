@@ -11,6 +11,8 @@ import random
 import re
 from dataclasses import dataclass
 
+from study_text import HALF_CAR
+
 _CAR = """
 [vehicle]
 model = "quarter-car"
@@ -18,18 +20,7 @@ sprung_mass = "250 kg"
 unsprung_mass = "35 kg"
 tyre_stiffness = "150 kN/m"
 """
-_HALF = """
-[vehicle]
-model = "half-car"
-sprung_mass = "363.5 kg"
-pitch_inertia = "200 kg m^2"
-unsprung_mass_front = "25 kg"
-unsprung_mass_rear = "20 kg"
-tyre_stiffness_front = "120 kN/m"
-tyre_stiffness_rear = "100 kN/m"
-distance_front = "0.775 m"
-distance_rear = "1.265 m"
-"""
+_HALF = f"\n[vehicle]\n{HALF_CAR}\n"
 _FULL = """
 [vehicle]
 model = "full-car"

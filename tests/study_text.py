@@ -14,6 +14,24 @@ from inerter.files.study.study import Study
 
 VEHICLE = 'sprung_mass = "250 kg"\nunsprung_mass = "35 kg"\ntyre_stiffness = "150 kN/m"'
 PAPER_CAR = 'sprung_mass = "181.75 kg"\nunsprung_mass = "25 kg"\ntyre_stiffness = "120 kN/m"'  # of Wang and Su (2008)
+HALF_CAR = """model = "half-car"
+sprung_mass = "363.5 kg"
+pitch_inertia = "200 kg m^2"
+unsprung_mass_front = "25 kg"
+unsprung_mass_rear = "20 kg"
+tyre_stiffness_front = "120 kN/m"
+tyre_stiffness_rear = "100 kN/m"
+distance_front = "0.775 m"
+distance_rear = "1.265 m\""""  # of the same paper
+ON_A_ROUGH_ROAD = """[vehicle]
+model = "quarter-car"
+sprung_mass = "320 kg"
+unsprung_mass = "38 kg"
+tyre_stiffness = "190 kN/m"
+[road]
+speed = "80 km/h"
+roughness = "2e-6 m^3/cycle"
+"""  # the begin of a file
 ELEMENTS = 'k = "20 kN/m"\nc = "1 kN s/m"\nb = "30 kg"'
 LAYOUTS = 'S1 = "k | c"\nS2 = "k | c | b"'
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy.stats
 import xarray as xr
+from study_text import ON_A_ROUGH_ROAD
 
 from inerter.errors import PerformanceIndexError, StudyError
 from inerter.files.common.layouts import StrutLayout
@@ -30,17 +31,9 @@ from inerter.optimisation.optimise import optimise
 from inerter.table import csv_rows, csv_text
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
-TEXT = """
-title = "Friction on both sides"
-[vehicle]
-model = "quarter-car"
-sprung_mass = "320 kg"
-unsprung_mass = "38 kg"
-tyre_stiffness = "190 kN/m"
-[road]
-speed = "80 km/h"
-roughness = "2e-6 m^3/cycle"
-[elements]
+TEXT = (
+    f'\ntitle = "Friction on both sides"\n{ON_A_ROUGH_ROAD}'
+    + """[elements]
 k = "90 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
 b = "300 kg"
@@ -56,6 +49,7 @@ optimise = "norm"
 evaluate = ["norm", "expected-value", "statistical-linearisation"]
 realisations = 4
 """
+)
 ROADS = ExpectedValue(realisations=4, jobs=1)
 
 

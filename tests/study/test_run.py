@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from campaigns import sampled
+from study_text import ON_A_ROUGH_ROAD
 
 from inerter.errors import StudyError
 from inerter.files.common.folder import WriteMode, open_results
@@ -29,17 +30,9 @@ from inerter.files.study.study import Study
 from inerter.methods.method import evaluate
 from inerter.work.checkpoints import Checkpoint
 
-SWEEP = """
-title = "Soft and stiff springs"
-[vehicle]
-model = "quarter-car"
-sprung_mass = "320 kg"
-unsprung_mass = "38 kg"
-tyre_stiffness = "190 kN/m"
-[road]
-speed = "80 km/h"
-roughness = "2e-6 m^3/cycle"
-[elements]
+SWEEP = (
+    f'\ntitle = "Soft and stiff springs"\n{ON_A_ROUGH_ROAD}'
+    + """[elements]
 k = "20 kN/m"
 c = { from = "100 N s/m", to = "100 kN s/m" }
 b = { from = "1 kg", to = "2000 kg" }
@@ -52,6 +45,7 @@ indices = ["J1", "J3"]
 optimise = "norm"
 sweep = { k = { from = "10 kN/m", to = "90 kN/m", points = POINTS } }
 """
+)
 
 
 def write(folder: Path, points: int = 3, change: tuple[str, str] = ("f", "f")) -> Path:

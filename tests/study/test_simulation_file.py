@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from folders import EXAMPLES, ROOT
-from study_text import with_changes
+from study_text import HALF_CAR, PAPER_CAR, with_changes
 from wang_su import ROAD, paper_quarter_car
 
 from inerter.errors import StudyError
@@ -48,18 +48,7 @@ layout = "S2"
 duration = "0.5 s"
 """
 
-HALF = CAR.replace(
-    'model = "quarter-car"\nsprung_mass = "181.75 kg"\nunsprung_mass = "25 kg"\ntyre_stiffness = "120 kN/m"',
-    """model = "half-car"
-sprung_mass = "363.5 kg"
-pitch_inertia = "200 kg m^2"
-unsprung_mass_front = "25 kg"
-unsprung_mass_rear = "20 kg"
-tyre_stiffness_front = "120 kN/m"
-tyre_stiffness_rear = "100 kN/m"
-distance_front = "0.775 m"
-distance_rear = "1.265 m\"""",
-)
+HALF = CAR.replace(f'model = "quarter-car"\n{PAPER_CAR}', HALF_CAR)
 
 FULL = HALF.replace(
     'model = "half-car"\nsprung_mass = "363.5 kg"',

@@ -17,7 +17,7 @@ import pytest
 from folders import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
-from study_text import assert_survives, with_changes
+from study_text import HALF_CAR, assert_survives, with_changes
 from wang_su import ROAD, paper_half_car, paper_quarter_car
 
 from inerter.errors import NetworkError, StudyError
@@ -61,18 +61,9 @@ indices = ["J3", "J1"]
 optimise = "norm"
 """
 
-HALF = """
-[vehicle]
-model = "half-car"
-sprung_mass = "363.5 kg"
-pitch_inertia = "200 kg m^2"
-unsprung_mass_front = "25 kg"
-unsprung_mass_rear = "20 kg"
-tyre_stiffness_front = "120 kN/m"
-tyre_stiffness_rear = "100 kN/m"
-distance_front = "0.775 m"
-distance_rear = "1.265 m"
-[road]
+HALF = (
+    f"\n[vehicle]\n{HALF_CAR}\n"
+    + """[road]
 speed = "90 km/h"
 roughness = "5e-7 m^3/cycle"
 [elements]
@@ -86,6 +77,7 @@ unlike = { front = "k | c", rear = "k | c_r" }
 indices = ["J5"]
 optimise = "norm"
 """
+)
 
 
 @pytest.fixture

@@ -549,7 +549,7 @@ BAD = {
     ),
     "condition that norm cannot see": (
         [*FRICTION, ("[study]", '[[conditions]]\nf = "20 N"\n[study]')],
-        '"conditions[1]".f',
+        "conditions[1].f",
         ["f is a friction element", '"expected-value"'],
     ),
     "budget that norm cannot see": (

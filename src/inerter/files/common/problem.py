@@ -15,7 +15,7 @@ from inerter.formatting import capital
 from inerter.statements import Severity, Statement
 from inerter.units import quote_value
 
-_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_BARE_KEY = re.compile(r"[A-Za-z0-9_-]+(\[[0-9]+\])?")  # with its number in a list of tables
 
 
 @dataclass(frozen=True)

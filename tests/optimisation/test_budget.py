@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -130,6 +131,20 @@ def test_break_even_friction_is_within_its_bound_of_that_of_simulations(friction
 def test_the_bound_of_a_break_even_value_of_exact_values_is_of_rounding():
     found = break_even(series(), conventional(), J1, parameter="k", method=Norm(), bounds=(1e4, 3e5))
     assert found.error_bound < 1e-7
+
+
+class Boundless(Norm):
+    """A method whose values have no error bound."""
+
+    def estimate(self, vehicle, index):
+        return replace(super().estimate(vehicle, index), error_sources=())
+
+
+def test_a_break_even_value_without_an_error_bound_is_not_ok():
+    found = break_even(series(), conventional(), J1, parameter="k", method=Boundless(), bounds=(1e4, 3e5))
+    assert math.isnan(found.error_bound)
+    assert found.status.kind is StatusKind.INACCURATE
+    assert "no error bound" in found.status.message
 
 
 @pytest.mark.marathon

@@ -62,7 +62,7 @@ class BreakEven:
     SI units; `interval` is the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are
     nan for a method that models friction and has none. `error_bound` is the largest relative error, sampling apart,
     that the error bounds of the two index values allow. `status` is no better than the worst of the compared estimates,
-    and ok means that `error_bound` is no larger than 10 %, as far as it is known.
+    and ok means that `error_bound` is no larger than 10 %: it is "inaccurate" by a method that names no error sources.
 
     >>> import inerter as it
     >>> good = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0, name="valve"))
@@ -286,8 +286,14 @@ def _crossing(
 
 def _within_promise(bound: float, here: Comparison, parameter: str) -> Status:
     """Inaccurate where the errors of the two compared values may move their crossing by more than is promised."""
-    if not bound > _PROMISE:
+    if bound <= _PROMISE:
         return OK
+    if np.isnan(bound):
+        return Status(
+            StatusKind.INACCURATE,
+            "break-even value with an unknown error: the values compared have no error bound, as the method names no "
+            "error sources",
+        )
     first, second = (format_share(one.error_bound, 2) for one in (here.first, here.second))
     return Status(
         StatusKind.INACCURATE,

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from folders import EXAMPLES, ROOT
+from scipy.signal import lsim
 from study_text import HALF_CAR, PAPER_CAR, with_changes
 from wang_su import ROAD, paper_quarter_car
 
@@ -226,6 +227,47 @@ every = 4
     request = load(CAR, ("[simulation]\n", settings), ("[vehicle]", 'title = "A \\"bump\\""\n[vehicle]'))
     assert (request.step, request.every, request.energy, request.title) == (0.25e-3, 4, True, 'A "bump"')
     assert_survives(request, tmp_path)
+
+
+BUILDING = """
+[vehicle]
+model = "mechanism"
+[vehicle.coordinates]
+floor_1 = "40 t"
+floor_2 = "30 t"
+[vehicle.struts]
+storey_1 = { upper = { floor_1 = 1 } }
+storey_2 = { upper = { floor_2 = 1 }, lower = { floor_1 = 1 }, network = "k | c" }
+[vehicle.forces]
+quake = { floor_1 = 40000, floor_2 = 30000 }
+[elements]
+k = "30 MN/m"
+c = "300 kN s/m"
+[layouts]
+plain = "k | c"
+[signal]
+kind = "sampled"
+file = "quake.csv"
+input = "quake"
+hold = "linear"
+[simulation]
+duration = "4 s"
+step = "20 ms"
+"""
+
+
+def test_an_earthquake_record_is_a_force_on_all_masses(load, tmp_path):
+    time = np.arange(201) * 0.02
+    ground = np.random.default_rng(0).normal(size=time.size)  # m/s^2
+    table = "\n".join(f"{t:.2f}, {-a!r}" for t, a in zip(time.tolist(), ground.tolist(), strict=True))
+    (tmp_path / "quake.csv").write_text(f"time [s], value [N]\n{table}\n", encoding="utf-8")
+    run = load(BUILDING).run()
+    coupling = np.array([[2.0, -1.0], [-1.0, 1.0]]) / np.array([[40e3], [30e3]])
+    a = np.block([[np.zeros((2, 2)), np.eye(2)], [-30e6 * coupling, -300e3 * coupling]])
+    b, above_ground = np.array([[0.0], [0.0], [-1.0], [-1.0]]), np.eye(2, 4)
+    _, expected, _ = lsim((a, b, above_ground, np.zeros((2, 1))), ground, time)
+    found = np.stack([run["floor_1_displacement"], run["floor_2_displacement"]], axis=1)
+    np.testing.assert_allclose(found, expected, atol=1e-10 * np.abs(expected).max())
 
 
 def test_the_steady_state_is_one_period(load):

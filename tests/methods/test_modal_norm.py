@@ -72,6 +72,25 @@ def test_they_are_right_to_a_billionth_where_damping_is_light(name):
         assert norms[i] == pytest.approx(objective._exact_norms(points[i]), rel=1e-9)
 
 
+def test_of_few_states_modes_know_designs_of_which_covariances_are_not_sure():
+    inner = (Spring(1e6) | Damper(3200.0)) - (Inerter(free(1e2, 1e5, "b")) | Damper(free(1e4, 1e6, "d"), name="d"))
+    car = it.QuarterCar(181.75, 25.0, 120e3, Spring(120e3) | Damper(free(10.0, 1e6, "c")) - inner)
+    index = it.RandomResponse({"d_velocity": 1.0}, ROAD)  # as across friction that hardly slips
+    objective, points = it.Norm().objective(car, index), draw(car, 200, 5)
+    unsure = np.isinf(objective._by_covariances(points, np.empty(0))[2])
+    assert unsure.sum() > 20
+    norms, gradients, errors, is_modal = objective._kernel_norms(points, objective.problem.weights)
+    assert np.array_equal(is_modal, unsure)
+    known = np.flatnonzero(unsure & np.isfinite(errors))
+    assert known.size > 0.8 * unsure.sum()
+    for i in known[:6]:
+        assert norms[i] == pytest.approx(objective._exact_norms(points[i]), rel=1e-9)
+        step = 1e-3 * np.cos(np.arange(3.0))
+        values = [objective._exact_index(points[i] * np.exp(by * step)) for by in (2.0, 1.0, -1.0, -2.0)]
+        slope = np.dot([-1.0, 8.0, -8.0, 1.0], values) / 12.0
+        assert (gradients[i] * points[i]) @ step == pytest.approx(slope, rel=1e-6)
+
+
 def test_a_filter_behind_isotropic_tracks_is_not_lost():
     road, shape = it.Road(5e-7, 25.0, it.Coherence.isotropic(1.5)), it.Filter([20.0], [1.0, 20.0])
     index, point = it.TyreLoad(it.FilteredExcitation(road, shape)), draw(FULL, 1, 3)[0]

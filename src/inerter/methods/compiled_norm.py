@@ -42,7 +42,7 @@ _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values wi
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
 _UNCERTAIN = 1e-10  # error estimate from which on the error bound of a norm behind a filter may be exceeded
-_MANY_STATES = 9  # with those of filters, from which on modes are faster than covariances
+_MANY_STATES = 9  # with those of filters, from which on modes are faster than covariances, and come first
 _FEW, _MOST_EXACT = 8, 64  # designs of a search that are all valued, and that are valued without rounding at most
 
 
@@ -69,8 +69,8 @@ class CompiledNorm:
 
     @cached_property
     def _modal_arguments(self) -> tuple[Any, Any, Any] | None:
-        """Arguments of the norms by modes; None where these cannot serve or take longer."""
-        return modal_arguments(self.problem) if len(self.problem.descriptor.states) >= _MANY_STATES else None
+        """Arguments of the norms by modes; None where these cannot serve."""
+        return modal_arguments(self.problem)
 
     @cached_property
     def arrivals(self) -> tuple[Array, tuple[Any, Any, float], tuple[NDArray[np.int64], Array]]:
@@ -252,19 +252,26 @@ class CompiledNorm:
         return not self.single_source_definitions and self._excess is None and bool(self.reachable_outputs.all())
 
     def _kernel_norms(self, points: Array, weights: Array) -> tuple[Array, Array, Array, Bools]:
-        """Norms, gradients and error estimates over one source: by modes, else by covariances for its filter.
+        """Norms, gradients and error estimates over one source: by modes or by covariances for its filter.
 
-        The last tells which are by modes.
+        The slower way takes the designs of which the other is not sure. The last tells which are by modes.
         """
-        norms, gradients, errors = self._by_modes(points, weights)
+        many = len(self.problem.descriptor.states) >= _MANY_STATES
+        ways = (self._by_modes, self._by_covariances) if many else (self._by_covariances, self._by_modes)
+        norms, gradients, errors = ways[0](points, weights)
         missing = np.isinf(errors)
         if missing.any():
             rest = np.flatnonzero(missing)
-            found = h2_kernels.norms(points[rest], *self.arguments, weights)
+            found = ways[1](points[rest], weights)
             norms[rest], errors[rest] = found[0], found[2]
             if weights.size:
                 gradients[rest] = found[1]
-        return norms, gradients, errors, ~missing
+        return norms, gradients, errors, ~missing if many else missing
+
+    def _by_covariances(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
+        """The same by covariances, with states for filters."""
+        norms, gradients, errors = h2_kernels.norms(points, *self.arguments, weights)
+        return np.asarray(norms), np.asarray(gradients), np.asarray(errors)
 
     def _by_modes(self, points: Array, weights: Array) -> tuple[Array, Array, Array]:
         """Norms, gradients and error estimates over one source by modes; estimates are infinite where modes fail."""

@@ -19,7 +19,7 @@ from inerter.methods.averages import mean_and_error
 from inerter.methods.compare import Comparison, Difference, compare_estimates, difference_of
 from inerter.methods.linear import CONVENTIONS, with_convention_filters
 from inerter.methods.method import Estimate
-from inerter.methods.perturbation import first_order
+from inerter.methods.perturbation import first_order, sides_of
 from inerter.methods.realisations import random_excitation, realisation_seeds, run
 from inerter.systems.piecewise import piecewise
 
@@ -271,6 +271,18 @@ def test_the_mean_change_is_that_of_a_gaussian_motion(case):
     expected = it.evaluate(design(1.0), index, method).value - it.evaluate(design(0.0), index, method).value
     assert np.mean(more) == pytest.approx(expected, rel=0.05)
     assert here.shape == (2,)
+
+
+def test_what_a_road_does_to_the_sign_of_a_velocity_is_found_once_for_all_forces():
+    weak, strong = (
+        paper_quarter_car(Spring(9e4) | Damper(5e3) - (Inerter(300.0) | Friction(force))) for force in (10.0, 25.0)
+    )
+    first = HELD.controls(weak, J1, 8)
+    found_before = sides_of.cache_info().misses
+    second = HELD.controls(strong, J1, 8)
+    assert sides_of.cache_info().misses == found_before
+    for one, other in zip(first, second, strict=True):
+        assert other == pytest.approx(2.5 * one, rel=1e-12)
 
 
 def test_first_order_is_silent_where_it_knows_nothing():

@@ -28,6 +28,7 @@ Complex = NDArray[np.complex128]
 _HIGHEST = 100.0  # [Hz] of the road's lines: what moves a vehicle lies below
 _TIMES = 8  # at least, a period of the highest line
 _TOGETHER = 2**15  # times of several roads at once: few enough for a cache
+_KEPT = 128  # such groups: those of many roads of the usual length, of 64 KB each
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,15 +46,9 @@ class FirstOrder:
         return np.concatenate([self._changes(part) for part in parts]) if parts else np.zeros(0)
 
     def _changes(self, seeds: Sequence[int]) -> Array:
-        lines, times = self.velocities.shape[0], self._times
-        roads = np.array([_lines(self.excitation.road, self.excitation.period, lines, seed) for seed in seeds])
-        total = np.zeros(len(seeds))
+        road, period, total = self.excitation.road, self.excitation.period, np.zeros(len(seeds))
         for velocity, effect in zip(self.velocities.T, self.effects.T, strict=True):
-            spectrum = np.zeros((len(seeds), times // 2 + 1), dtype=complex)
-            spectrum[:, 1 : lines + 1] = velocity * roads
-            sides = np.sign(np.fft.irfft(spectrum, times))
-            forces = np.fft.rfft(sides)[:, 1 : lines + 1] * (2.0 / times)
-            total += np.real(np.conj(roads) * forces @ effect)
+            total += np.real(sides_of(road, period, tuple(seeds), self._times, velocity.tobytes()) @ effect)
         return total
 
     @property
@@ -67,6 +62,21 @@ class FirstOrder:
 def _lines(road: Road, period: float, count: int, seed: int) -> Complex:
     """Complex amplitudes of the lowest `count` spectral lines of a realisation."""
     return multisine(road, seed, lowest=1.0 / period, highest=count / period).coefficient
+
+
+@lru_cache(maxsize=_KEPT)
+def sides_of(road: Road, period: float, seeds: tuple[int, ...], times: int, velocity: bytes) -> Complex:
+    """Lines (seeds, lines) of sgn(v), times those of the road, from those of v for a line of the road of 1 m.
+
+    They do not depend on the force of the friction, by which a break-even value is sought.
+    """
+    per_line = np.frombuffer(velocity, dtype=complex)
+    lines = per_line.size
+    roads = np.array([_lines(road, period, lines, seed) for seed in seeds])
+    spectrum = np.zeros((len(seeds), times // 2 + 1), dtype=complex)
+    spectrum[:, 1 : lines + 1] = per_line * roads
+    sides = np.sign(np.fft.irfft(spectrum, times))
+    return np.asarray(np.conj(roads) * (np.fft.rfft(sides)[:, 1 : lines + 1] * (2.0 / times)))
 
 
 def first_order(

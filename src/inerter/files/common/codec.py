@@ -17,7 +17,7 @@ from inerter.files.common.kinds import kind_with
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, invalid_entry
 from inerter.files.common.schema import INSTEAD, example_value
-from inerter.files.common.suggest import nearest
+from inerter.files.common.suggest import closest, nearest
 from inerter.formatting import in_words
 
 INVALID: Any = object()  # stands for an entry that cannot be read
@@ -230,12 +230,17 @@ class TableCodec(Codec):
         """Object or dictionary of the table; unknown keys are problems."""
         raw, count = self.before(context.as_table(raw)), len(context.problems)
         values: dict[str, Any] = {}
+        known = {name for one in self.keys for name in (one.name, one.former)}.union(self.names)
+        others = {name: entry for name, entry in raw.items() if name not in known}
+        misspelt = set() if self.rest else {closest(n, self.names) for n in others if not self._belongs(n, context)}
         for one in self.keys:
             if name := one.name_in(raw):
                 values[one.attribute] = context.at(name, one.example).read(one.codec, raw[name])
                 if one.former in raw and name != one.former:
                     both = f"given together with {one.name}, the new name of the same key"
                     context.at(one.former).add(EntryError(fault=both, expected="one of the two"))
+            elif one.default is REQUIRED and one.name in misspelt:
+                values[one.attribute] = INVALID
             elif one.default is REQUIRED:
                 example = one.example or f"a section [{'.'.join((*context.place, one.name))}]"
                 wanted = f"{example}, or {one.implied}" if one.implied else example
@@ -245,18 +250,16 @@ class TableCodec(Codec):
                 values[one.attribute] = one.default
             if not context.place:
                 context.loaded[one.name] = values[one.attribute]
-        known = self.names
-        former = {one.former for one in self.keys}
-        others = {name: entry for name, entry in raw.items() if name not in known and name not in former}
         if self.rest:
             values[self.rest] = others
         for name in () if self.rest else others:
-            hint = self._hint(name, context)
-            context.at(name).add(EntryError(fault="unknown key", expected=f"one of {', '.join(known)}", hint=hint))
+            hint = self._belongs(name, context) or nearest(name, self.names)
+            expected = f"one of {', '.join(self.names)}"
+            context.at(name).add(EntryError(fault="unknown key", expected=expected, hint=hint))
         return INVALID if len(context.problems) > count else self.check(self.make(**values))
 
-    def _hint(self, name: str, context: LoadContext) -> str:
-        """A sentence on the section that an unknown key may belong in, or the known key that is meant; else empty."""
+    def _belongs(self, name: str, context: LoadContext) -> str:
+        """Sentence on the section or kind that an unknown key belongs to; else empty."""
         other = None if context.place else kind_with(name)
         if other is not None:
             return f"It is a section of {other.plural}, for: inerter {other.command}."
@@ -265,7 +268,7 @@ class TableCodec(Codec):
             if place == context.place[:1] and table.tag[1]:
                 return f'It is a key of {table.tag[0]} = "{table.tag[1]}".'
         elsewhere = sorted((place for place, _ in every if place[:1] != context.place[:1]), key=len)
-        return f"It belongs in [{'.'.join(elsewhere[0])}]." if elsewhere else nearest(name, self.names)
+        return f"It belongs in [{'.'.join(elsewhere[0])}]." if elsewhere else ""
 
     def dump(self, value: Any) -> dict[str, Any]:
         """The table without keys whose entry is None or an empty table."""

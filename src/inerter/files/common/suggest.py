@@ -16,9 +16,19 @@ def nearest(word: object, known: Iterable[str]) -> str:
     >>> nearest("half_car", ("quarter-car", "half-car"))
     ' Did you mean "half-car"?'
     """
+    found = closest(word, known)
+    return "" if found is None else f" Did you mean {quote_value(found)}?"
+
+
+def closest(word: object, known: Iterable[str]) -> str | None:
+    """The known word that an unknown one is a misspelling of; None if no known word is near.
+
+    >>> closest("half_car", ("quarter-car", "half-car"))
+    'half-car'
+    """
     candidates = {name.lower(): name for name in known}
     close = get_close_matches(word.lower(), candidates, n=1) if isinstance(word, str) else []
-    return f" Did you mean {quote_value(candidates[close[0]])}?" if close else ""
+    return candidates[close[0]] if close else None
 
 
 def some(names: Iterable[str]) -> str:

@@ -9,7 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.identification.experiment import experiment_of
-from inerter.identification.passed_noise import passed_noise
+from inerter.identification.passed_noise import is_one_tone, passed_noise
 from inerter.identification.statements.identifiability import Verdict
 
 TRUTH = {"ks": 2.379e6, "cs": 10974.0, "b": 41.49}
@@ -42,6 +42,27 @@ def test_one_tone_without_the_bandwidth_of_the_load_cell_gives_no_wrong_value() 
         assert low <= TRUTH[name] <= high, name
     assert not fit.identifiable["ks"]
     assert not fit.identifiable["sensor delay"]
+
+
+def test_one_tone_is_told_from_two_and_from_a_sweep() -> None:
+    tone = it.cosine(6e-4, 2.3)
+    assert is_one_tone(experiment_of(RIG.run(tone, 3.0)))
+    assert is_one_tone(experiment_of(RIG.run(tone, 1.1)))  # two periods and a half
+    assert not is_one_tone(experiment_of(RIG.run(tone + it.cosine(6e-5, 5.1), 3.0)))
+    assert not is_one_tone(experiment_of(RIG.run(it.chirp(2e-4, 2.0, 3.0, 3.2), 3.0)))
+
+
+@pytest.mark.campaign
+def test_four_unknowns_of_one_tone_have_no_values() -> None:
+    """Two equations; which of all solutions fits best, the noise decides."""
+    device = (it.Spring(7.7e4) | it.Damper(2300.0)) - it.Inerter(17.0)
+    rig = it.VirtualRig(
+        device, seed=0, sampling=300.0, encoder_noise=4e-7, encoder_resolution=0.0, force_noise=0.5,
+        force_resolution=0.0, force_range=1e5,
+    )  # fmt: skip
+    known = rig.run(it.cosine(3.5e-4, 14.0), 2.0)
+    fit = it.identify(it.Record(known.time, known.displacement, known.force), "elastic", starts=16)
+    assert not any(fit.identifiable.values())
 
 
 @pytest.mark.campaign

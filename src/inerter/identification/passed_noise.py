@@ -16,6 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import next_fast_len
+from scipy.optimize import minimize_scalar
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, constrained_optimum, steps_of
@@ -29,6 +31,7 @@ from inerter.records.filtering import gain
 Matrix = NDArray[np.float64]
 _FACTORS = np.exp([-3.6, -2.4, -1.2, 1.2, 2.4, 3.6])  # of a value, from where other fits are sought
 _ELSEWHERE, _EVALUATIONS, _ACCURACY = 3, 12, 1e-5  # other fits: number, evaluations, relative change that ends them
+_OF_ONE_TONE, _BESIDE = 3, 0.05  # most values that one tone gives, with its start; share of other motion beside it
 _AS_GOOD = 2.0  # rise of the cost up to which another fit is as good, as at the ends of an interval of 95 %
 
 
@@ -59,12 +62,16 @@ def decided_by_noise(
 ) -> NDArray[np.bool_]:
     """Mask of the values whose intervals do not contain those of every fit with weights by the passed noise.
 
+    A tone is two numbers, and its start gives hardly more than a third: more unknowns than that all depend on noise.
+
     None for a device with friction or gaps, which passes more at some instants than at others.
     """
     point = optimum.point
     none = np.zeros(point.size, dtype=bool)
     if not all(element.plain and element.switch is None for element in problem.rig.device.elements()):
         return none
+    if point.size > _OF_ONE_TONE and len(problem.experiments) == 1 and is_one_tone(problem.experiments[0]):
+        return ~none
     by_noise = replace(problem, spectra=tuple(passed_noise(e) for e in problem.experiments))
     forces, left = problem.forces(point), noise_residuals(problem, point, (seed, 1))
     if left is None or any(force is None for force in forces):
@@ -77,6 +84,25 @@ def decided_by_noise(
     points = _fits_as_good(by_noise, best_fit_of(by_noise, point, steps_of(optimum)))
     ends = np.array([(p.lower.end, p.upper.end) for p in profiles])
     return np.asarray(np.any((points < ends[:, 0]) | (points > ends[:, 1]), axis=0))
+
+
+def is_one_tone(e: Experiment) -> bool:
+    """Whether the compared motion is one sine, but for a small share of its r.m.s. value."""
+    moved, time = e.motion.displacement[e.kept], e.record.time[e.kept]
+    moved = moved - np.mean(moved)
+    padded = next_fast_len(8 * moved.size, real=True)
+    lines = np.abs(np.fft.rfft(moved * np.hanning(moved.size), padded))
+    line = 1.0 / (padded * e.record.interval)
+    highest = float(np.argmax(lines)) * line
+
+    def left(frequency: float) -> float:
+        phase = 2.0 * np.pi * frequency * time
+        columns = np.column_stack([np.cos(phase), np.sin(phase), np.ones(time.size)])
+        return float(np.std(moved - columns @ np.linalg.lstsq(columns, moved)[0]))
+
+    ends = max(highest - 8.0 * line, 0.1 * line), highest + 8.0 * line
+    least = minimize_scalar(left, bounds=ends, method="bounded", options={"xatol": 1e-3 * line})
+    return float(least.fun) < _BESIDE * float(np.std(moved))
 
 
 def _fits_as_good(problem: FitProblem, optimum: BestFit) -> Matrix:

@@ -50,7 +50,8 @@ export function Page({ store, api, enter }) {
   const { decision, check, margins } = state.answers;
   const unanswered = Object.values({ ...state, answers: null });
   // what an answer is not about is not drawn anew when it comes
-  const [menu, network] = useMemo(() => [Menu, NetworkPanel].map(shown), unanswered);
+  const menu = useMemo(() => shown(Menu), unanswered);
+  const network = useMemo(() => shown(NetworkPanel), [...unanswered, check]);
   const [line, ranking, values] = useMemo(() => [DecisionLine, AnswersPanel, ValuesPanel].map(shown),
     [...unanswered, decision, check, margins]);
   return html`<a class="skip" href="#verdict">To the verdict</a>

@@ -6,7 +6,7 @@ import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
 import { brief, briefIn, printed, strutWords, symbolParts } from "../state/scale.js";
 import { isFreeNetwork, kindOf, layoutsWith, selectedElement, treeOf, unitOf, wrongIn } from "../library.js";
-import { strutTexts } from "../questions.js";
+import { answerOf, strutTexts } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { symbolPath } from "./sketch.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
@@ -25,8 +25,9 @@ const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store, api: Api}} props */
 export function NetworkPanel({ store, api }) {
-  const { across } = store.get().view;
-  return html`<section class=${`panel network ${across ? "across" : ""}`} aria-labelledby="network-title">
+  const state = store.get();
+  return html`<section class=${`panel network ${state.view.across ? "across" : ""}`} aria-labelledby="network-title"
+    aria-busy=${answerOf(state, "check").is === "coming"}>
     <${Editor} store=${store} api=${api} /></section>`;
 }
 

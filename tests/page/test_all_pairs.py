@@ -102,6 +102,7 @@ def _are_alike(one: str, other: str) -> bool:
     return points == pytest.approx(others, abs=0.01 + 0.2 / max(min(tall, other_tall), 0.2))
 
 
+@pytest.mark.timeout(3600)
 @pytest.mark.marathon
 def test_no_example_shows_what_belongs_to_the_one_before(visitor: Visitor) -> None:
     """All pairs: at rest each looks as it did the first time, and no number, verdict or curve came before that."""

@@ -151,7 +151,7 @@ def test_every_key_is_in_the_schema_which_takes_the_whole():
         ({"front": 3}, ['front: got 3: not a table; expected front = { stiffness = "1 kN/mm" }.']),
         ({"front": {}}, ['front.stiffness: missing; expected stiffness = "1 kN/mm".']),
         ({"bushes": {"a": {"loss": "-1 rad"}}}, ["bushes.a.stiffness: missing", "bushes.a.loss: got", "negative"]),
-        ({"steps": [{}]}, ['"steps[1]".stiffness: missing']),
+        ({"steps": [{}]}, ["steps[1].stiffness: missing"]),
         ({"steps": 3}, ["steps: got 3: not a list of tables"]),
         ({"elements": {}}, ['elements: none given; expected elements = { k = "1 kN/m" }.']),
         ({"mass": "0 kg", "orders": ["2", "2"], "number": True}, ["mass: ", "orders: ", "number: "]),

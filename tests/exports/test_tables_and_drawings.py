@@ -28,7 +28,7 @@ CAR = paper_quarter_car(K | C - B)
 
 
 def table(text: str) -> pd.DataFrame:
-    return pd.read_csv(io.StringIO(text), comment="#")
+    return pd.read_csv(io.StringIO(text), comment="#", dtype=str).astype(float)  # to the last bit by any pandas
 
 
 @pytest.mark.parametrize("number", ALWAYS)

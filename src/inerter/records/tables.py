@@ -275,6 +275,8 @@ def _parse(source: str, block: bytes, line: int, layout: TableLayout, wanted: li
     import pandas as pd  # noqa: PLC0415 - heavy
 
     options: dict[str, Any] = {"sep": layout.delimiter or r"\s+", "decimal": layout.decimal, "comment": "#"}
+    if tuple(map(int, pd.__version__.split(".")[:2])) < (3, 1):  # whose default loses the last three digits
+        options["float_precision"] = "round_trip"
     try:
         frame = pd.read_csv(
             io.BytesIO(block), header=None, names=list(range(layout.columns)), usecols=wanted, dtype=float,

@@ -89,7 +89,8 @@ def _walk(visitor: Visitor, examples: Sequence[Path]) -> None:
         shown, seen = _opened(visitor, examples[here], titles[here])
         step = f"{examples[here].name} after {'the quarter car' if before is None else examples[before].name}"
         expected = alone.setdefault(here, shown)
-        assert shown == expected, step
+        assert {**shown, "curves": None} == {**expected, "curves": None}, step
+        seen["curves"] += shown["curves"]  # in whatever room messages leave
         for kind in ("numbers", "verdict"):
             assert set(seen[kind]) <= set(expected[kind]), (step, kind)
         others = [one for one in seen["curves"] if not any(_are_alike(one, other) for other in expected["curves"])]

@@ -154,7 +154,7 @@ def _acts_at_once(switches: SwitchingSystem, output: int) -> Iterator[str]:
 
 
 def _head(model: FmuModel, version: str, token: str) -> list[str]:
-    text = " ".join([model.title, *model.switches.system.notes])
+    text = " ".join([f"{model.title}.", *model.switches.system.notes])
     description = "".join(one for one in text if one.isprintable())  # XML has no control characters
     return [
         '<?xml version="1.0" encoding="UTF-8"?>',

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import socket
@@ -76,11 +77,19 @@ class Served:
     def wait_until_ready(self) -> None:
         self.get("ready")
 
-    def get(self, what: str) -> bytes:
+    def get(self, what: str, method: str = "GET") -> bytes:
         """What the server answers to a script."""
-        request = urllib.request.Request(f"{self.origin}/api/{what}", headers={"Authorization": f"Bearer {self.token}"})
+        authorised = {"Authorization": f"Bearer {self.token}"}
+        request = urllib.request.Request(f"{self.origin}/api/{what}", headers=authorised, method=method)
         with urllib.request.urlopen(request, timeout=_READY) as answer:
             return bytes(answer.read())
+
+    def forget_work(self) -> None:
+        """Stop and forget all jobs: the next window is of another test, which counts its own."""
+        while jobs := json.loads(self.get("work"))["work"]:
+            for job in jobs:
+                self.get(f"work/{job['id']}", "DELETE")
+            time.sleep(0.02)
 
 
 @dataclass

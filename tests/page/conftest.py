@@ -73,6 +73,9 @@ def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
     yield visitor
     for context in contexts:
         context.close()
+    for one in {id(window.served): window.served for window in all_of_them}.values():
+        if one.process is not None:
+            one.forget_work()
     assert [window.elsewhere for window in all_of_them] == [[] for _ in all_of_them]
     assert [window.faults for window in all_of_them] == [[] for _ in all_of_them]
 

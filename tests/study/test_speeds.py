@@ -226,7 +226,7 @@ def test_an_element_of_any_name_that_results_do_not_use_can_be_swept(name, tmp_p
     _, results = found(tmp_path, text)
     assert results["value"].dims[:3] == ("layout", "index", name)
     assert np.isfinite(results["at_speeds.value"]).all()
-    results.to_netcdf(tmp_path / "results.nc")
+    results.to_netcdf(tmp_path / "results.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "results.nc") as again:
         assert again[name].values.tolist() == [20e3, 40e3]
 

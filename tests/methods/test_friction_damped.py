@@ -60,14 +60,19 @@ def test_where_friction_damps_a_resonance_with_few_lines_roads_are_longer() -> N
     assert short.error_bound > 0.012
 
 
+def assert_bounds_hold_the_bias(lower: it.Estimate, higher: it.Estimate) -> None:
+    """The second value is above the first by more than their scatter explains, and by less than their bounds allow."""
+    apart, error = higher.value - lower.value, math.hypot(lower.standard_error, higher.standard_error)
+    assert apart > 3.0 * error
+    assert apart < 3.0 * error + lower.error_bound * lower.value + higher.error_bound * higher.value
+
+
 @pytest.mark.marathon
 def test_the_bound_of_few_lines_holds_their_bias() -> None:
     car, index = lightly_damped()
     short = it.evaluate(car, index, it.ExpectedValue(realisations=320, seed=5, period=160))
     long = it.evaluate(car, index, it.ExpectedValue(realisations=64, seed=640))
-    apart, error = long.value - short.value, math.hypot(short.standard_error, long.standard_error)
-    assert apart > 3.0 * error
-    assert apart < 3.0 * error + short.error_bound * short.value + long.error_bound * long.value
+    assert_bounds_hold_the_bias(short, long)
 
 
 def loosely_stopped() -> tuple[it.QuarterCar, it.RideComfort]:
@@ -93,9 +98,7 @@ def test_with_backlash_the_bound_of_few_lines_holds_their_bias() -> None:
     car, index = loosely_stopped()
     short = it.evaluate(car, index, it.ExpectedValue(realisations=200, seed=5, period=10))
     long = it.evaluate(car, index, it.ExpectedValue(realisations=12, period=160))
-    apart, error = short.value - long.value, math.hypot(short.standard_error, long.standard_error)
-    assert apart > 3.0 * error
-    assert apart < 3.0 * error + short.error_bound * short.value + long.error_bound * long.value
+    assert_bounds_hold_the_bias(long, short)
 
 
 def test_lines_in_a_resonance_are_its_decay_rate_times_the_period() -> None:

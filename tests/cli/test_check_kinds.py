@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 
@@ -91,6 +92,24 @@ def test_what_is_of_no_kind_is_taken_for_a_study(sections):
 def test_all_sections_of_a_kind_make_it_that_kind():
     for kind in kinds():
         assert kind_of({section: {} for section in (*kind.sections, "elements", "layouts")}) is kind
+
+
+@pytest.mark.skipif(not Path("/dev/fd").is_dir(), reason="this system has no path of a pipe")
+@pytest.mark.parametrize(
+    "text", [SIMULATION, RIG, CONFIGURATION, (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")]
+)
+def test_a_pipe_is_read_once(capsys: pytest.CaptureFixture[str], text: str) -> None:
+    reader, writer = os.pipe()
+    os.write(writer, text.encode())
+    os.close(writer)
+    try:
+        code = call(["check", f"/dev/fd/{reader}"])
+    finally:
+        os.close(reader)
+    out, err = capsys.readouterr()
+    assert (code, err) == (0, "")
+    assert f"/dev/fd/{reader}: ok. " in out
+    assert "also needs" not in out  # as of an empty configuration
 
 
 BAD_SIMULATIONS = {

@@ -16,6 +16,7 @@ from study_text import assert_refused, load_text, study_text
 import inerter as it
 from inerter.cli.main import call
 from inerter.errors import StudyError
+from inerter.files.common.toml import read_tables
 from inerter.files.study import searching
 from inerter.files.study.checking import check_lines, search_plans
 from inerter.files.study.running import part_results
@@ -368,7 +369,7 @@ def test_two_free_networks_are_refused(tmp_path: Path) -> None:
 
 
 def test_check_counts_the_networks(study: Study) -> None:
-    (line, *_) = check_lines(study.path)
+    (line, *_) = check_lines(read_tables(study.path, "a study"), study.path)
     assert "ok." in line
     assert "9 networks of S to search for each index" in line
 

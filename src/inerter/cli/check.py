@@ -29,6 +29,6 @@ def check(files: Sequence[Path]) -> tuple[InerterError, ...]:
 
 
 def _check(file: Path) -> None:
-    kind = kind_of(read_tables(file, "a study, simulation, rig or identification file"))
-    for line in kind.check_lines(file):
+    tables = read_tables(file, "a study, simulation, rig or identification file")
+    for line in kind_of(tables).check_lines(tables, file):
         print("\n".join(wrap(line, _WIDTH, subsequent_indent="  ", break_long_words=False, break_on_hyphens=False)))

@@ -20,8 +20,8 @@ DEFAULT = "run"  # the command of the kind that a file without any known section
 class FileKind:
     """Name of a kind of file, the command that reads it, and the sections that identify it.
 
-    The module `checking` of its `folder` has `check_lines(path)`: sentences about a file that the command accepts. It
-    raises the `StudyError` with which the command would refuse it.
+    The module `checking` of its `folder` has `check_lines(tables, path)`: sentences about a file that the command
+    accepts, from its tables. It raises the `StudyError` with which the command would refuse it.
     """
 
     plural: str
@@ -39,9 +39,9 @@ class FileKind:
         """The command line that takes the file at `path`."""
         return f"inerter {self.command} {self.usage.format(file=quote(str(path)))}"
 
-    def check_lines(self, path: Path) -> Iterable[str]:
+    def check_lines(self, tables: Mapping[str, Any], path: Path) -> Iterable[str]:
         """Sentences about a sound file of this kind; raises `StudyError` for another."""
-        lines: Iterable[str] = import_module(f"{self.folder}.checking").check_lines(path)
+        lines: Iterable[str] = import_module(f"{self.folder}.checking").check_lines(tables, path)
         return lines
 
 

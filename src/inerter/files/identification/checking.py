@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.files.common.suggest import some
-from inerter.files.identification.loading import load_identification
+from inerter.files.identification.loading import identification_of
 from inerter.networks.elements import Free
 
 
-def check_lines(path: Path) -> Iterator[str]:
+def check_lines(tables: Mapping[str, Any], path: Path) -> Iterator[str]:
     """Sentences about a sound configuration: the model, and what is free; raises `StudyError` for another."""
-    request = load_identification(path)
+    request = identification_of(tables, path)
     if request.layout is None and request.name is None:
         yield f"{path}: ok. Configuration for inerter identify, which also needs --model."
         return

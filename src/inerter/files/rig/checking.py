@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.errors import InerterError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
-from inerter.files.rig.loading import load_rig
+from inerter.files.rig.loading import rig_of
 from inerter.formatting import format_quantity
 from inerter.networks.parser import format_expression
 
 
-def check_lines(path: Path) -> Iterator[str]:
+def check_lines(tables: Mapping[str, Any], path: Path) -> Iterator[str]:
     """Sentences about a sound rig file: the device, the signal and the samples.
 
     Raises `StudyError` as `load_rig` does, and for what the rig would refuse.
     """
-    request = load_rig(path)
+    request = rig_of(tables, path)
     try:
         samples = request.check()
     except InerterError as error:

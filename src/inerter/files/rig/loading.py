@@ -32,7 +32,12 @@ def load_rig(path: str | Path) -> RigRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    found = value_of(rig_codec(), read_tables(path, "a rig file"), path)
+    return rig_of(read_tables(path, "a rig file"), path)
+
+
+def rig_of(tables: Mapping[str, Any], path: Path) -> RigRequest:
+    """Rig from the tables of a file at `path`; raises `StudyError` as `load_rig` does."""
+    found = value_of(rig_codec(), tables, path)
     elements, layouts, settings = found["elements"], found["layouts"], found["rig"]
     chosen = settings.get("layout") or (next(iter(layouts)) if len(layouts) == 1 else "")
     signal = signal_of(path, {Rig.moved: "m"}, found["signal"])

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.errors import InerterError
 from inerter.files.common.plausibility import road_sentence, road_warnings, vehicle_warnings
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
-from inerter.files.simulation.loading import load_simulation
+from inerter.files.simulation.loading import simulation_of
 from inerter.formatting import format_quantity
 from inerter.networks.parser import names
 from inerter.signals.road import Road
 
 
-def check_lines(path: Path) -> Iterator[str]:
+def check_lines(tables: Mapping[str, Any], path: Path) -> Iterator[str]:
     """Sentences about a sound simulation file: what moves, for how long, and what no road or vehicle is.
 
     Raises `StudyError` as `load_simulation` does, and for what `simulate` would refuse.
     """
-    request = load_simulation(path)
+    request = simulation_of(tables, path)
     try:
         steps = request.check()
         length = request.length or 0.0

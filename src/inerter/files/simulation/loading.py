@@ -30,7 +30,12 @@ def load_simulation(path: str | Path) -> SimulationRequest:
     Raises `StudyError` with one line for every problem: file, place, what arrived, what was expected, what to try.
     """
     path = Path(path)
-    found = value_of(simulation_codec(), read_tables(path, "a simulation file"), path)
+    return simulation_of(read_tables(path, "a simulation file"), path)
+
+
+def simulation_of(tables: Mapping[str, Any], path: Path) -> SimulationRequest:
+    """Simulation request from the tables of a file at `path`; raises `StudyError` as `load_simulation` does."""
+    found = value_of(simulation_codec(), tables, path)
     line, line_problems = line_through(found["road"], path)
     request = _resolve(path, found, line)
     for check in (_names, _needs, _parts):

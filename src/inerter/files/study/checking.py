@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -16,7 +16,7 @@ from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
 from inerter.files.study.cases import Cases, cases, design_notes
 from inerter.files.study.limits import all_limits, limited_definitions
-from inerter.files.study.loading import load_study, unchosen_problems
+from inerter.files.study.loading import study_of, unchosen_problems
 from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentences
 from inerter.files.study.study import Study, elements_used, searched_layouts
@@ -41,12 +41,12 @@ _NOT_SEARCHED = {"sweeps": "sweep", "budgets": "break_even", "tolerance": "toler
 _sound: Study | None = None  # the last one without problems: who checks before a run may tell how far that is
 
 
-def check_lines(path: Path) -> Iterator[str]:
+def check_lines(tables: Mapping[str, Any], path: Path) -> Iterator[str]:
     """Sentences about a valid study file: its size, its roads, warnings and notes.
 
     Raises `StudyError` as `load_study` and `check_study` do.
     """
-    study = load_study(path)
+    study = study_of(tables, path)
     if searched_layouts(study):
         size, notes = _search_size(study), road_notes(study)
     else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
@@ -66,6 +67,18 @@ def test_files_hold_the_same_motion(simulated: tuple[Path, str, str]) -> None:
             (e.time, e.element, e.before, e.after) for e in run.events
         ]
     assert "# inerter" in (folder / "simulation.toml").read_text()
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_the_summary_of_a_measured_road_names_the_keys_that_were_given(tmp_path: Path, capsys) -> None:
+    rows = "".join(f"{0.1 * i:.1f},{np.sin(0.1 * i):.6f}\n" for i in range(400))
+    (tmp_path / "road.csv").write_text(f"distance [m],height [mm]\n{rows}", encoding="utf-8")
+    text = (EXAMPLES / "stick_slip.toml").read_text(encoding="utf-8")
+    text = re.sub(r"\[signal\].*?\n\n", '[signal]\nkind = "profile"\nfile = "road.csv"\n\n', text, flags=re.DOTALL)
+    text = re.sub(r'duration = ".*?"', 'duration = "0.1 s"', text)
+    (tmp_path / "car.toml").write_text(f'{text}\n[road]\nspeed = "25 m/s"\n', encoding="utf-8")
+    assert call(["simulate", str(tmp_path / "car.toml"), "-o", str(tmp_path / "out")]) == 0
+    assert "road: profile, file road.csv\n" in capsys.readouterr().out
 
 
 @pytest.mark.usefixtures("undrawn")

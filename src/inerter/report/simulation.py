@@ -52,7 +52,8 @@ def simulation_data(result: SimulationResult) -> dict[str, Any]:
 def _request(result: SimulationResult) -> Iterator[str]:
     request, run = result.request, result.run
     signal, units = request.signal, request.signal.units
-    keys = [f"{k} {format_quantity(v, units[k]) if units[k] else _word(v)}" for k, v in signal.values.items()]
+    given = {key: value for key, value in signal.values.items() if value not in (None, "")}
+    keys = [f"{k} {format_quantity(v, units[k]) if units[k] else _word(v)}" for k, v in given.items()]
     yield from wrap(request.title, WIDTH)
     network = "; ".join(dict.fromkeys(request.layouts[request.layout].struts.values()))
     yield from wrap(f"{request.model}, {request.layout} = {network}", WIDTH, subsequent_indent="  ")

@@ -54,6 +54,31 @@ def test_wrong_requests(arguments: list[str], words: str, capsys: pytest.Capture
     assert words in fails(arguments, capsys)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["run"], "STUDY is missing."),
+        (["identify", "--model", "ideal"], "RECORDS is missing."),
+        (["export", "a.toml"], "--to is missing."),
+        (["run", "a.toml", "-o"], "-o is given without its value."),
+        (["run", "check", "a b.toml"], 'Unexpected argument: "a b.toml".'),
+    ],
+)
+def test_a_missing_or_surplus_argument_is_named(
+    arguments: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert fails(arguments, capsys) == f"inerter: {sentence}\nTry: inerter {arguments[0]} --help\n"
+
+
+@pytest.mark.parametrize(("example", "command"), [("quarter-car", "run"), ("stick_slip", "simulate")])
+def test_a_file_in_the_place_of_a_command_is_told_its_command(
+    example: str, command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = EXAMPLES / f"{example}.toml"
+    assert f"\nTry: inerter {command} {shlex.quote(str(path))}\n" in fails([str(path)], capsys)
+    assert "\nTry: inerter --help\n" in fails(["none.toml"], capsys)
+
+
 @pytest.mark.parametrize("command", ["", "run", "check", "simulate", "rig", "identify", "reproduce"])
 def test_the_help_that_is_proposed_is_that_of_the_command(command: str, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = [*command.split(), "--nope"]

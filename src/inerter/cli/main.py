@@ -512,7 +512,10 @@ def call(arguments: list[str]) -> int:
         tell(error)
         return INTERRUPTED
     except CycloptsError as error:
-        return _fail(StudyError(f"{error}\nTry: {' '.join(('inerter', *app.parse_commands(arguments)[0]))} --help"))
+        from inerter.cli.wrong_arguments import argument_sentence
+
+        command = " ".join(("inerter", *app.parse_commands(arguments)[0]))
+        return _fail(StudyError(argument_sentence(error, command)))
     except InerterError as error:
         return _fail(error)
     except OSError as error:

@@ -222,12 +222,14 @@ class ApproximateLinear(FormerMethodNames):
             pooled = not self._raw or definition.is_peak
             gains = _gains(squares[:, places], inputs[:, None], pooled)
             factor = _factor(definition, definition.input_paths(runs.system.mechanism)[0], runs)
-            estimate = self._from_gains(definition, linear, gains * factor, runs)
+            estimate, peaked = self._from_gains(definition, linear, gains * factor, runs)
         settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
         near = factor * self._near_peak(estimate, runs.drive)
         jumps = 0.0 if self._raw else runs.sampling_error(places, near)  # of raw gains instants are a part
         stepped = ErrorSource("time step", _STEPPED + jumps)
-        own = stepped, settled, *estimate.error_sources
+        if not self._raw:
+            peaked = max(peaked, runs.peaked_by_play(places, near))
+        own = stepped, settled, *estimate.error_sources, few_lines(peaked)
         stand_ins = error_sources_of(definition.drive, runs.system.mechanism)
         if shape_of(definition.drive) is not None and linear is not None:
             model = linear_model(linear, runs.speeds, runs.drive.excitation.period)
@@ -241,26 +243,34 @@ class ApproximateLinear(FormerMethodNames):
 
     def _from_gains(
         self, definition: IndexDefinition, linear: EquivalentLinearModel | None, gains: Array, runs: Runs
-    ) -> Estimate:
-        """Estimate of the index from squared gains, with the equivalent linear model as control if there is one."""
+    ) -> tuple[Estimate, float]:
+        """Estimate of the index from squared gains, with the equivalent linear model as control if there is one.
+
+        Also the share of a mean square by which it may be off by friction, as harmonics have lower peaks than a random
+        motion.
+        """
         drive = runs.drive
         if self._raw:
-            return self._combine(definition, None, gains, drive)
+            return self._combine(definition, None, gains, drive), 0.0
+        left = 2.0 * runs.left
         if linear is None or drive.excitation.is_held:
-            alone = self._combine(definition, None, gains, drive, 2.0 * runs.left)
-            return replace(alone, notes=(_HELD if linear else _UNLIKE,))
+            alone = self._combine(definition, None, gains, drive, left)
+            return replace(alone, notes=(_HELD if linear else _UNLIKE,)), 0.0
         model = linear_model(linear, runs.speeds, drive.excitation.period)
         if not model.status.ok:
-            return Estimate(math.inf if np.any(np.isinf(model.norms)) else math.nan, definition.unit, model.status)
-        unseen = model.unseen(gains.mean(axis=0), drive.omega)
+            value = math.inf if np.any(np.isinf(model.norms)) else math.nan
+            return Estimate(value, definition.unit, model.status), 0.0
+        unseen, loose = model.unseen(gains.mean(axis=0), drive.omega), has_play(runs.system)
+        if loose:  # the model closes gaps, which may damp what is not damped while they are open
+            unseen = max(unseen, left)
         if unseen <= _LOST:
-            return self._combine(definition, model, gains, drive, unseen)
-        if has_play(runs.system):
-            return replace(self._combine(definition, None, gains, drive, 2.0 * runs.left), notes=(_UNLIKE,))
+            return self._combine(definition, model, gains, drive, unseen), model.peaked
+        if loose:
+            return replace(self._combine(definition, None, gains, drive, left), notes=(_UNLIKE,)), 0.0
         at, decay = format_quantity(abs(model.pole.imag), "rad/s", 3), format_quantity(-model.pole.real, "1/s", 2)
         period = format_quantity(drive.excitation.period, "s", 6)
         message = f"a period of {period} is too short for the motion at {at}, which decays by {decay}; use a longer one"
-        return Estimate(math.nan, definition.unit, Status(StatusKind.INACCURATE, message))
+        return Estimate(math.nan, definition.unit, Status(StatusKind.INACCURATE, message)), 0.0
 
     def _is_settled(self, estimate: Estimate, count: int) -> bool:
         return self.relative_error is None or count >= _MOST or self._is_accurate_enough(estimate)
@@ -306,8 +316,7 @@ class ApproximateLinear(FormerMethodNames):
         count = scatter.size
         error = float(np.sqrt(np.sum(scatter**2) / (count * (count - 1))))
         interval, samples = interval_of(value, error, count), tuple((value + scatter).tolist())
-        lower_peaks = () if known is None else (few_lines(known.peaked),)
-        sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *lower_peaks, *smoothed)
+        sources = (ErrorSource("spacing of harmonics", 0.5 * unseen), *smoothed)
         return Estimate(
             value, definition.unit, OK, error, interval, count, peaks, samples=samples, error_sources=sources
         )

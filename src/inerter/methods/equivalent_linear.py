@@ -23,9 +23,9 @@ from inerter.systems.descriptor import close, describe
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.linear import LinearSystem
 from inerter.systems.output_filters import with_output_filters
-from inerter.systems.outputs import Output
+from inerter.systems.outputs import Output, of_mount
 from inerter.systems.piecewise import PiecewiseSystem
-from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
+from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
 _STUCK = 1e4  # times a typical damper is as good as stuck: more would only cost digits
@@ -46,13 +46,14 @@ def with_velocities(system: PiecewiseSystem) -> tuple[PiecewiseSystem, tuple[str
 
 def has_play(system: PiecewiseSystem) -> bool:
     """Whether an element switches that no damper represents, as a gap."""
-    return bool(mounts_with_play(system))
+    return bool(travels_with_play(system))
 
 
-def mounts_with_play(system: PiecewiseSystem) -> list[Strut | Tyre]:
-    """Mounts with an element that switches and that no damper represents, as a gap."""
+def travels_with_play(system: PiecewiseSystem) -> tuple[str, ...]:
+    """Names of the travels of mounts with an element that switches and that no damper represents, as a gap."""
     mounts = system.mechanism.mounts()
-    return [mount for mount in mounts if any(e.acts and not e.is_damped for e in mount.network.elements())]
+    loose = (mount for mount in mounts if any(e.acts and not e.is_damped for e in mount.network.elements()))
+    return tuple(of_mount(mount)[1] for mount in loose)
 
 
 @dataclass(frozen=True, eq=False)

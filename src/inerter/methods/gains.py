@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.formatting import format_number
-from inerter.methods.equivalent_linear import EquivalentLinearModel, modal_shares
+from inerter.methods.equivalent_linear import (
+    EquivalentLinearModel,
+    lower_peaks,
+    modal_shares,
+    relative_change,
+    travels_with_play,
+)
 from inerter.methods.excitation import ExcitedInputs
-from inerter.methods.steady_squares import jump_scatter, relative_bound
+from inerter.methods.steady_squares import jump_scatter, number_of_lines, relative_bound
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import GainPeak
 from inerter.norms.response import frequency_response
@@ -26,6 +32,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 Array = NDArray[np.float64]
 _UNSEEN = 5e-4  # of a mean square that harmonics may miss without a doubt
 _REPEATS = 1e-4  # change of the state over a period, relative to its size, that leaves an estimate alone
+_COMPARED = 2  # realisations that are simulated at twice their size
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +87,12 @@ class Runs:
     inputs: list[Array] = field(default_factory=list)  # (harmonics,)
     powers: list[Array] = field(default_factory=list)  # mean squares of the velocities (frictions,)
     scatter: list[Array] = field(default_factory=list)  # by jumps of the outputs between samples (outputs,)
+    over_lines: list[float] = field(default_factory=list)  # one over the fewest lines in a travel with backlash
     status: Status = OK
     warning: Status = OK
     mismatch: float = 0.0  # the largest change of the state over a period that was recorded, relative to its size
     left: float = 0.0  # the largest share of a motion that is left after a period
+    larger: Runs | None = None  # the same realisations at twice the size
 
     def upto(self, count: int) -> tuple[Array, Array]:
         """Squared sizes of outputs (realisations, outputs, harmonics) and of the input (realisations, harmonics).
@@ -113,6 +122,27 @@ class Runs:
             shares.append(relative_bound(scatter[list(places)], sizes))
         return float(np.max(shares, initial=0.0))
 
+    def peaked_by_play(self, places: Sequence[int], factor: Array) -> float:
+        """Share of a mean square by which it may be off with backlash, as harmonics have lower peaks than random input.
+
+        The mean square is of the outputs at `places`, of squared gains times `factor` (outputs, harmonics). Its change
+        is that of the motion under an excitation twice as large; infinite where that cannot be simulated.
+        """
+        if not self.over_lines or self.drive.excitation.is_held:
+            return 0.0
+        if self.larger is None:
+            self.larger = Runs(
+                self.system, replace(self.drive, rms=2.0 * self.drive.rms), self.outputs, self.frictions, self.seed
+            )
+        sums = []
+        for runs in (self, self.larger):
+            squares, inputs = runs.upto(_COMPARED)
+            if not runs.status.ok:
+                return math.inf
+            gains = squares[:_COMPARED, list(places)].sum(axis=0) / inputs[:_COMPARED].sum(axis=0)
+            sums.append((gains * factor).sum(axis=1))
+        return lower_peaks(relative_change(sums[1], sums[0]), float(np.mean(self.over_lines)))
+
     def _add(self, number: int) -> None:
         seed = int(np.random.SeedSequence([self.seed, number]).generate_state(1)[0])
         if number == 0:
@@ -134,6 +164,9 @@ class Runs:
         self.inputs.append(power)
         self.scatter.append(jump_scatter(run, self.outputs))
         self.powers.append(np.array([np.mean(trajectory[name][:-1] ** 2) for name in self.frictions]))
+        travels = [np.abs(np.fft.rfft(trajectory[name][:-1])) ** 2 for name in travels_with_play(self.system)]
+        if travels:
+            self.over_lines.append(float(np.max(1.0 / number_of_lines(np.array(travels)))))
 
 
 def largest_gain(

@@ -22,8 +22,8 @@ from inerter.methods.equivalent_linear import (
     has_play,
     lower_peaks,
     modal_shares,
-    mounts_with_play,
     relative_change,
+    travels_with_play,
     with_velocities,
 )
 from inerter.methods.error_bounds import with_error_sources
@@ -43,7 +43,6 @@ from inerter.methods.realisations import (
 from inerter.methods.steady_squares import mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
-from inerter.systems.outputs import of_mount
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.work.running import map_items
 
@@ -131,7 +130,7 @@ def on_roads(
         return OnRoads(system, (), (), definition, excitation, None, seed, LONGEST)
     linear = equivalent_linear_model(system.mechanism, definition, conventions)
     longest = LONGEST if period is None else excitation.period
-    play = tuple(of_mount(mount)[1] for mount in mounts_with_play(system))
+    play = travels_with_play(system)
     return OnRoads(*with_velocities(system), play, definition, excitation, linear, seed, longest)
 
 
@@ -200,8 +199,9 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     """
     count, excitation, linear = len(design.outputs), design.excitation, design.linear
     if linear is None:
-        held = excitation.hold is not None
-        return OutOfBandContribution(np.zeros(count), beyond=0.0 if held else np.nan, notes=() if held else (_UNLIKE,))
+        if excitation.hold is not None:
+            return OutOfBandContribution(np.zeros(count))
+        return OutOfBandContribution(np.zeros(count), _left_over(found), beyond=np.nan, notes=(_UNLIKE,))
     power = np.mean([ran.power for ran in found], axis=0)
     if not np.all(np.isfinite(power)):
         return OutOfBandContribution(np.full(count, np.nan))
@@ -227,7 +227,9 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     unseen, within_reach = 2.0 * left, True
     if unseen > _UNSEEN:
         unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
-    if has_play(design.system) and unseen > _UNSEEN:
+    if design.play:  # the model closes gaps, which may damp what is not damped while they are open
+        unseen = max(unseen, _left_over(found))
+    if design.play and unseen > _UNSEEN:
         return OutOfBandContribution(np.zeros(count), unseen, beyond=share, peaked=peaked, notes=(_UNLIKE,))
     if unseen > _LOST:
         return OutOfBandContribution(
@@ -238,6 +240,11 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
     measured = road_errors(design.definition, system, pade_order, norms)
     return OutOfBandContribution(added, unseen, share * unlike, peaked, within_reach, status, measured=measured)
+
+
+def _left_over(found: Sequence[RoadRun]) -> float:
+    """Share of a mean square that lines may miss, from what a period leaves of the simulated motion."""
+    return 2.0 * max(ran.steady.left for ran in found)
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,8 +85,14 @@ def steady_squares(
     again = np.sqrt((lines * passed).sum(axis=1)) / count
     with np.errstate(divide="ignore", invalid="ignore"):
         jumps = missed_by_samples(integration, outputs, power / again)
-        spread = lines[:, 1:].sum(axis=1) ** 2 / (lines[:, 1:] ** 2).sum(axis=1)
-    return Squares(power, trajectory.status, steady, jumps, spread)
+    return Squares(power, trajectory.status, steady, jumps, number_of_lines(lines))
+
+
+def number_of_lines(squares: Array) -> Array:
+    """Number of lines over which motions spread, from the mean squares of their lines (motions, lines from zero on)."""
+    varying = squares[:, 1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(varying.sum(axis=1) ** 2 / (varying**2).sum(axis=1))
 
 
 def _nan_squares(count: int, status: Status, steady: PeriodicState) -> Squares:

@@ -14,7 +14,7 @@ from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.trajectory import PeriodicState
+from inerter.simulation.trajectory import PeriodicState, left_of_motion
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -49,10 +49,8 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     """The last period, recorded, how well it repeats, and how much of a motion a period leaves.
 
     It repeats as well as the change of the state over it is small, relative to its size. From rest, one period (or the
-    end of a long one) is gone through to settle, then others until the state repeats. In that time the motion lacking
-    at first, as large as the state, falls to that change, which gives what is left of it after one period: an upper
-    bound for the shares of several modes, whose decays add up to less than the first of them alone would. `table` is
-    one period that is repeated.
+    end of a long one) is gone through to settle, then others until the state repeats. How fast it does tells what is
+    left of a motion (see `left_of_motion`). `table` is one period that is repeated.
     """
     last = table.time.size - 1
     first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
@@ -70,7 +68,7 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
         run = event_driven.start(system, table, begun, after=run.ending)
         run.advance(last)
         mismatch, settled = run.mismatch(begun), begun_at + before
-    return run, mismatch, min(mismatch ** (1.0 / settled), 1.0) if settled else 1.0
+    return run, mismatch, left_of_motion(mismatch, settled)
 
 
 def settle(

@@ -85,6 +85,20 @@ class PeriodicState:
             return self.mismatch
         return float(self.mismatch / (1.0 - self.mismatch ** (1.0 / self.periods)))
 
+    @property
+    def left(self) -> float:
+        """Largest share of a motion that is left after one period; see `left_of_motion`."""
+        return left_of_motion(self.mismatch, self.periods - 1.0)
+
+
+def left_of_motion(mismatch: float, periods: float) -> float:
+    """Largest share of a motion that is left after one period, from the relative change of state over the last one.
+
+    In the `periods` before that, the motion lacking at first, at least a tenth as large as the state, falls to the
+    change. This is an upper bound for several modes, whose decays add up to less than the first of them alone would.
+    """
+    return float(min((10.0 * mismatch) ** (1.0 / periods), 1.0)) if periods > 0.0 else 1.0
+
 
 @dataclass(frozen=True, eq=False)
 class FinalState:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from itertools import pairwise
 from typing import Any
 
@@ -13,6 +14,7 @@ from folders import example_tables
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from starlette.testclient import TestClient
+from study_text import HALF_CAR, study_text
 
 import inerter as it
 from inerter.app.answers import answer_panel
@@ -160,6 +162,29 @@ def test_every_example_has_a_verdict(name: str) -> None:
     for text in [told["goal"]["sentence"], *sentences(told)]:
         assert text.endswith(".")
         assert not {"nan", "None", "n/a", "inf"} & set(text.replace(",", " ").split())
+
+
+@pytest.mark.parametrize("share", [1.0, 3.0])
+def test_a_design_that_is_worse_in_a_condition_is_said_to_be(client: TestClient, share: float) -> None:
+    """Better over both of two conditions; improvements in each are those of a document with its numbers alone."""
+    laden = {"name": "laden", "vehicle.sprung_mass": "800 kg", "vehicle.pitch_inertia": "520 kg m^2"}
+    slowly = {**laden, "road.speed": "15 m/s"}
+    parts = 'k = "40 kN/m"\nc = "1 kN s/m"\nc3 = "1.5 kN s/m"\nb = "140 kg"'
+    text = study_text('indices = ["J1"]', vehicle=HALF_CAR, elements=parts, layouts='S1 = "k | c"\nS3 = "k | c3 - b"')
+    plain = tomllib.loads(text.replace('model = "quarter-car"', "", 1))
+    there = {**plain, "vehicle": {**plain["vehicle"], "sprung_mass": "800 kg", "pitch_inertia": "520 kg m^2"}}
+    there["road"] = {**plain["road"], "speed": "15 m/s"}
+    first, second = (_improvement(client, document) for document in (plain, there))
+    assert second < -0.5 < 0.5 < first
+    told = ask(client, "panel/decision", study={**plain, "conditions": [{"share": share}, slowly]}, index="J1")
+    assert told["rows"][0]["layout"] == "S3"
+    assert typeset(f"S3 is {-second:.1f} % worse than S1 in condition laden.") in sentences(told)
+    assert not [text for text in sentences(told) if "in condition 1" in text]
+
+
+def _improvement(client: TestClient, document: dict[str, Any]) -> float:
+    rows = ask(client, "panel/decision", study=document, index="J1")["rows"]
+    return float(next(row["improvement_percent"] for row in rows if row["layout"] == "S3"))
 
 
 def _indices(body: dict[str, Any]) -> list[dict[str, Any]]:

@@ -15,6 +15,8 @@ from inerter.errors import OK, Status, StatusKind
 
 STATUSES = [OK, OK, OK, Status(StatusKind.INACCURATE, "it sticks"), Status(StatusKind.UNSTABLE, "pole at 3 rad/s")]
 VALUES = st.sampled_from([1.0, 1.0 + 1e-12, 1.0003, 1.01, 1.3, 2.0, 2.5, inf, nan])
+CONDITIONS = [(), (("wet", Improvement(-1.2)), ("dry", Improvement(4.0))), (("wet", Improvement(-1.2, is_tie=True)),)]
+CONDITIONS.append(tuple((f"{i}", Improvement(float(i - 4))) for i in range(1, 8)))
 LIMITS = st.builds(
     lambda kept, excess: LimitResult("travel", "at most 8 mm", "9 mm", kept, excess),
     st.sampled_from([True, True, False, None]),
@@ -47,6 +49,7 @@ def results(draw: st.DrawFn) -> tuple[list[DesignResult], Over]:
         DesignResult(
             name=f"S{i + 1}",
             goal=IndexResult("J1", "ride comfort", "m/s^2", rows[i][0], rows[i][2], improvement=compared(i, 0)),
+            in_conditions=draw(st.sampled_from(CONDITIONS)) if compared(i, 0) is not None else (),
             others=(IndexResult("J3", "dynamic tyre load", "N", rows[i][1], improvement=compared(i, 1)),),
             limits=tuple(draw(st.lists(LIMITS, max_size=2))),
             unchosen=unchosen[i],
@@ -62,7 +65,9 @@ def results(draw: st.DrawFn) -> tuple[list[DesignResult], Over]:
 
 def kinds(decision: Decision, of: str) -> set[CaveatKind]:
     """Kinds of the caveats that name a design."""
-    return {one.kind for one in decision.verdict.caveats if of in one.sentence.replace(",", " ").split()}
+    return {
+        one.kind for one in decision.verdict.caveats if of in one.sentence.replace(",", " ").split(" than ")[0].split()
+    }
 
 
 @given(results())
@@ -113,6 +118,8 @@ def test_no_caveat_is_left_out(found: tuple[list[DesignResult], Over]) -> None:
         by = one.others[0].improvement
         assert not one.at_bounds or CaveatKind.BOUND in kinds(decision, one.name)
         assert by is None or by.is_equal or by.percent > 0.0 or CaveatKind.WORSE in kinds(decision, one.name)
+        lost = [name for name, by in one.in_conditions if by.percent < 0.0 and not by.is_tie and not one.is_baseline]
+        assert bool(lost) == (CaveatKind.CONDITION in kinds(decision, one.name))
 
 
 @given(results())

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from math import nan
+from math import isfinite, nan
 from typing import Any
 
 from inerter.app.comparing import DesignEstimate, describe_result, evaluate_design, improvement_percent
@@ -14,9 +14,10 @@ from inerter.app.index_values import DesignLimit, limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult
+from inerter.files.study.conditions import condition_labels
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, typeset
-from inerter.methods.compare import Comparison
+from inerter.methods.compare import Comparison, compare_estimates
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
@@ -130,6 +131,7 @@ class _DesignComparison:
             name=design.name,
             goal=goal,
             others=tuple(others),
+            in_conditions=tuple(self._in_conditions(found[0])),
             limits=tuple(one.result() for one in limits),
             unchosen=design.unchosen,
             at_bounds=at_bounds(design.free, design.values, self.study.free_units),
@@ -140,6 +142,17 @@ class _DesignComparison:
         )
         self._known[id(made)] = design, found, limits
         return made
+
+    def _in_conditions(self, one: DesignEstimate) -> Iterator[tuple[str, Improvement]]:
+        """Improvement of the goal in each of several conditions."""
+        base = self._base[0] if self._base else None
+        if base is None or one.design == self.baseline or one.beside(base) is None:
+            return
+        each = zip(one.estimate.in_conditions, base.estimate.in_conditions, strict=True)
+        for name, (own, other) in zip(condition_labels(self.study.conditions), each, strict=True):
+            by = improvement_of(compare_estimates(own, other))
+            if by is not None and len(self.study.conditions) > 1 and isfinite(by.percent):
+                yield name, by
 
     def over(self, one: DesignResult, other: DesignResult) -> Improvement | None:
         """Improvement of a design over another in the goal, on the same roads."""

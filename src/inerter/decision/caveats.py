@@ -22,6 +22,7 @@ class CaveatKind(StrEnum):
     """Kind of a caveat, in the order in which caveats are told."""
 
     WORSE = "worse"  # another index gets worse
+    CONDITION = "condition"  # the index gets worse in an operating condition
     STATUS = "status"  # a value is unreliable, infinite or missing
     LEFT_OUT = "left-out"  # a design is not valid
     TIE = "tie"  # a difference is not significant
@@ -77,6 +78,7 @@ def caveats_of(contest: Contest) -> list[Caveat]:
     """All caveats: by kind, and by the order of the designs."""
     found = [
         *_worse(contest),
+        *_worse_in_conditions(contest),
         *_statuses(contest),
         *_left_out(contest),
         *_ties(contest),
@@ -112,6 +114,24 @@ def _worse(contest: Contest) -> Iterator[Caveat]:
         be = "is" if len(names) == 1 else "are"
         text = f"{index} gets worse: {format_list(names)} {be} {size} than {base.name}."
         yield Caveat(CaveatKind.WORSE, text)
+
+
+def _worse_in_conditions(contest: Contest) -> Iterator[Caveat]:
+    base = contest.baseline
+    for one in contest.winners if base is not None else ():
+        worse = [(name, by) for name, by in one.in_conditions if not by.is_equal and by.percent < 0.0]
+        if not worse or base is None:
+            continue
+        if len(worse) == 1:
+            text = f"{one.name} is {worse[0][1].words} than {base.name} in condition {worse[0][0]}."
+        elif len(worse) <= _MOST_NAMES:
+            names = format_list([f"{name} ({by.size})" for name, by in worse])
+            text = f"{one.name} is worse than {base.name} in conditions {names}."
+        else:
+            name, by = min(worse, key=lambda each: each[1].percent)
+            many = f"{len(worse)} of {len(one.in_conditions)} conditions"
+            text = f"{one.name} is worse than {base.name} in {many}, by {by.size} in condition {name}."
+        yield Caveat(CaveatKind.CONDITION, text)
 
 
 def _statuses(contest: Contest) -> Iterator[Caveat]:

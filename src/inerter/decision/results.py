@@ -104,6 +104,7 @@ class DesignResult:
     name: str
     goal: IndexResult
     others: tuple[IndexResult, ...] = ()
+    in_conditions: tuple[tuple[str, Improvement], ...] = ()  # of the goal, in each of several conditions by its name
     limits: tuple[LimitResult, ...] = ()
     unchosen: tuple[str, ...] = ()
     at_bounds: tuple[str, ...] = ()  # "c is at its upper bound, 10 kN s/m"

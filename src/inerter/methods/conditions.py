@@ -165,7 +165,7 @@ class OverConditions(OfIndex):
         return [dataclasses.replace(self, index=one) for one in split(self.index, vehicle)]
 
     def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
-        """The value for a vehicle without free values; what was left out anywhere is among the notes."""
+        """The value for a vehicle without free values, with those in each condition; notes are those of any of them."""
         found = map_items(partial(_estimate_case, method), self.cases(vehicle))
         status = worst_of(one.status for one in found)
         notes = tuple(dict.fromkeys(note for one in found for note in one.notes))
@@ -173,8 +173,10 @@ class OverConditions(OfIndex):
             values = [one.value for one in found]
             worst = found[int(np.argmax(values))] if np.all(np.isfinite(values)) else found[_least_known(values)]
             sources = of_worst(found, worst.value)
-            return dataclasses.replace(worst, status=status, notes=notes, error_sources=sources)
-        return _mean(found, self.conditions.shares, status, notes)
+            over = dataclasses.replace(worst, status=status, notes=notes, error_sources=sources)
+        else:
+            over = _mean(found, self.conditions.shares, status, notes)
+        return dataclasses.replace(over, in_conditions=tuple(found))
 
     def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The values (designs,) at many values of the free values, nan where one is not ok."""

@@ -66,6 +66,7 @@ class Estimate:
     samples: tuple[float, ...] = field(default=(), repr=False)  # the value on each random input
     period: int | None = None  # of each random input [s]
     error_sources: tuple[ErrorSource, ...] = ()  # rounding, what stands in for something else, ...: not sampling
+    in_conditions: tuple[Estimate, ...] = field(default=(), repr=False)  # of an index over conditions: in each
 
     @property
     def error_bound(self) -> float:

@@ -8,6 +8,13 @@ from typing import TYPE_CHECKING
 
 from inerter.figures.labels import methods, swept_places
 from inerter.files.study.tasks import Answer, TaskResults, by_task
+from inerter.report.conditions import (
+    OTHERS_AT,
+    brief_condition_tables,
+    condition_names,
+    condition_tables,
+    swept_condition_sentences,
+)
 from inerter.report.index_summary import over_the_sweep
 from inerter.report.limits import limit_tables
 from inerter.report.method_comparison import method_tables
@@ -46,6 +53,9 @@ def design_sections(results: xr.Dataset) -> Iterator[Section]:
     )
     if len(methods(results)) > 1:
         yield Section("The methods side by side", method_tables(results), columns=True)
+    if condition_names(results) and not swept:
+        brief = brief_condition_tables(results)
+        yield Section("Operating conditions", condition_tables(results), brief=brief, remarks=[OTHERS_AT] * bool(brief))
     if "limit" in results.dims:
         yield Section("Constraints", limit_tables(results), _ABOUT_SWEPT_LIMITS if swept else _ABOUT_LIMITS)
 
@@ -66,7 +76,12 @@ def trade_off_section(results: xr.Dataset) -> Iterator[Section]:
 def _sweep_remarks(results: xr.Dataset) -> list[str]:
     """Sentences on where layouts outperform the baseline, and on designs that the tables omit."""
     told = over_the_sweep(results) if results.attrs["baseline"] else []
-    return [*(f"{index}: {sentence}." for index, sentence in told), *where_all_are(results)]
+    return [
+        *(f"{index}: {sentence}." for index, sentence in told),
+        *swept_condition_sentences(results),
+        *where_all_are(results),
+        *([OTHERS_AT] if condition_names(results) else []),
+    ]
 
 
 _ABOUT_LIMITS = (

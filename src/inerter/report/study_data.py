@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from textwrap import indent
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import swept_places
+from inerter.files.study.results import CONDITION, IN_CONDITIONS
 from inerter.files.study.running import StudyResult
 from inerter.files.study.summary import design_rows
 from inerter.files.study.tasks import by_task
@@ -67,10 +68,30 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
             "improvement_percent": json_data(row["improvement"]),
             **{_JSON.get(name, name): json_data(row[name]) for name in ("error_bound", *errors)},
             **({"at_speeds": at_speeds(data, names)} if "at_speeds.value" in data else {}),
+            **({"in_conditions": _in_conditions(data, row, errors)} if CONDITION in data.dims else {}),
             **({"limits": _limits(data, row)} if "limit" in data.dims else {}),
             "status": row["status"],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }
+
+
+def _in_conditions(data: xr.Dataset, row: Mapping[str, Any], errors: Sequence[str]) -> list[dict[str, Any]]:
+    """Value of one design in each operating condition, with its errors and its improvement over the baseline there."""
+    own = {name.removeprefix(IN_CONDITIONS): row[name] for name in row if name.startswith(IN_CONDITIONS)}
+    known = [name for name in ("error_bound", *errors) if name in own]
+    return [
+        {
+            "condition": label,
+            "share": share,
+            "value": json_data(own["value"][i]),
+            "decimals": shown_decimals(own["value"][i], own["standard_error"][i], own["error_bound"][i], _DIGITS),
+            "improvement_percent": json_data(own["improvement"][i]),
+            **{_JSON.get(name, name): json_data(own[name][i]) for name in known},
+        }
+        for i, (label, share) in enumerate(
+            zip(*(data[name].values.tolist() for name in (CONDITION, f"{IN_CONDITIONS}share")), strict=True)
+        )
+    ]
 
 
 def _is_known(data: xr.Dataset, name: str) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from math import hypot, isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
@@ -29,6 +30,7 @@ from inerter.formatting import format_list
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
+from inerter.report.conditions import condition_names, in_condition
 from inerter.report.index_summary import margins_of
 
 if TYPE_CHECKING:
@@ -69,10 +71,12 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
     """Decision on the best designs for an index, by the first method that models friction."""
     method = decisive_method(methods(results)) if methods(results) else ""
     one = by_method(results, method) if method else results
-    row = one.sel(index=index)
-    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name not in _DIMS])
-    row = row.drop_dims([name for name in row.dims if name not in _DIMS])
-    designs = [_design(results, row, index, name, method, study) for name in layouts(results)]
+    row = _row(one, index)
+    each = {name: _row(in_condition(one, i), index) for i, name in enumerate(condition_names(one))}
+    designs = [
+        replace(_design(results, row, index, name, method, study), in_conditions=tuple(_in_conditions(each, name)))
+        for name in layouts(results)
+    ]
 
     def over(first: DesignResult, second: DesignResult) -> Improvement | None:
         return _over(row, first, second)
@@ -83,6 +87,23 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
         method=brief_words_of(method) if method else "",
         remedy=remedy_of(method) if method else "",
     )
+
+
+def _row(results: xr.Dataset, index: str) -> xr.Dataset:
+    """Results for one index with the dimensions that a decision compares."""
+    row = results.sel(index=index)
+    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name not in _DIMS])
+    return row.drop_dims([name for name in row.dims if name not in _DIMS])
+
+
+def _in_conditions(each: Mapping[str, xr.Dataset], layout: str) -> Iterator[tuple[str, Improvement]]:
+    """Improvement over the baseline in each condition where both have a value."""
+    for name, row in each.items():
+        baseline = row.attrs["baseline"]
+        if baseline and layout != baseline:
+            by = _improvement(row, row.sel(layout=layout), row.sel(layout=baseline))
+            if by is not None:
+                yield name, by
 
 
 def _design(

@@ -16,7 +16,7 @@ from inerter.errors import DesignError, ErrorSource, worst_of
 from inerter.formatting import format_share
 from inerter.indices.definition import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
-from inerter.methods.conditions import values_changed
+from inerter.methods.conditions import OverConditions, values_changed
 from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Limit
@@ -106,12 +106,25 @@ class Quantile(OfIndex):
         return [replace(self, index=one) for one in split(self.index, vehicle)]
 
     def estimate(self, vehicle: Vehicle, method: Method) -> Estimate:
-        """The quantile for a vehicle without free values, with its standard error and interval."""
-        values = evaluate_sample(vehicle, self.index, method, self.scatter, self.factors)
+        """The quantile for a vehicle without free values, with its standard error and interval.
+
+        That of an index over conditions has the quantile in each of them too.
+        """
+        here, factors = estimate_of(vehicle, self.index, method), self.factors
+        if not isinstance(self.index, OverConditions):
+            values = evaluate_sample(vehicle, self.index, method, self.scatter, factors)
+            return self._estimate_from(values, here, vehicle, method)
+        cases = self.index.cases(vehicle)
+        table = np.array([evaluate_sample(*case, method, self.scatter, factors) for case in cases])
+        each = [self._estimate_from(*one, vehicle, method) for one in zip(table, here.in_conditions, strict=True)]
+        over = self._estimate_from(self.index.combine(table), here, vehicle, method)
+        return replace(over, in_conditions=tuple(each))
+
+    def _estimate_from(self, values: Array, here: Estimate, vehicle: Vehicle, method: Method) -> Estimate:
+        """The quantile of a sample of values about the value `here`."""
         if not (status := sample_status(values)).ok:
             return Estimate(np.nan, self.unit, status)
         value = float(np.sort(values) @ rank_weights(values.size, self.share))
-        here = estimate_of(vehicle, self.index, method)
         error, interval = with_scatter_of_values(value, quantile_error(values, self.share), here)
         bound = float(np.maximum(getattr(method, "promise", np.nan), here.error_bound))  # also by a measured road
         sources = (ErrorSource("values of the sample", bound),)

@@ -128,6 +128,7 @@ class Outcome(PartResult):
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
     speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
     speed_message: str = ""  # what makes those doubtful
+    in_conditions: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> own index in each
 
     def feasible_values(self, method: str) -> dict[str, float]:
         """The indices of this design by a method; empty where no design satisfies the limits."""
@@ -262,4 +263,15 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         error_bounds={m: {i: e.error_bound for i, e in by_index.items()} for m, by_index in estimates.items()},
         speeds=speeds,
         speed_message=speed_message,
+        in_conditions={m: list(map(_in_condition, e.in_conditions)) for m, e in own.items() if e.in_conditions},
     )
+
+
+def _in_condition(estimate: Estimate) -> dict[str, Any]:
+    """Value of an index in one condition with its errors, and the first of its values on random roads."""
+    return {
+        "value": estimate.value,
+        "standard_error": estimate.standard_error,
+        "error_bound": estimate.error_bound,
+        "samples": list(estimate.samples[:_MOST_SAMPLES]),
+    }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -33,6 +33,11 @@ class StudyCondition:
         units = {label: found.unit for label in self.numbers if (found := number_at(study, place_of(label)))}
         numbers = {label: f"{number!r} {units[label]}" for label, number in self.numbers.items()}
         return ConditionEntry(numbers=numbers, share=self.share, name=self.name or None)
+
+
+def condition_labels(conditions: Sequence[StudyCondition]) -> list[str]:
+    """Label of each condition in results: its name, else its number from 1."""
+    return [one.name or f"{i}" for i, one in enumerate(conditions, start=1)]
 
 
 def what_of(study: Study, place: Place) -> tuple[str, str] | None:

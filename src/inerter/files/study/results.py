@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 import inerter
 from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
+from inerter.files.study.conditions import condition_labels
 from inerter.files.study.limits import each_of, is_swept, limit_text
 from inerter.files.study.method_labels import limit_basis, method_labels
 from inerter.files.study.notes import Notes, road_notes
@@ -26,6 +27,8 @@ from inerter.methods.registry import is_blind
 
 Array = NDArray[np.float64]
 _OK = StatusKind.OK.value
+_Variable = tuple[tuple[str, ...], float | int | str, str]  # further dimensions, what is there before, long name
+_Scattered = tuple[str, tuple[int, ...]]  # beginning of the variables' names; case, method, perhaps condition
 
 
 class DatasetBuilder:
@@ -44,8 +47,8 @@ class DatasetBuilder:
         self.designs: dict[Case, Outcome] = {}  # where nothing is swept
         self._notes = Notes()
         self._texts: dict[str, str] = {}  # each once
-        self._samples: dict[tuple[int, int], Array] = {}  # by case and method, where there is a standard error
-        self._controls: dict[tuple[int, int], Array] = {}  # of those samples and of many more, where nothing is swept
+        self._samples: dict[_Scattered, Array] = {}  # where there is a standard error
+        self._controls: dict[tuple[int, ...], Array] = {}  # of those samples and of many more, where nothing is swept
         self._by: dict[str, None] = {}  # methods of the values at other speeds
         self._uncertain = is_uncertain(study)
         self._parameters = study.free_units
@@ -73,6 +76,7 @@ class DatasetBuilder:
             arrays[name][number] = getattr(outcome, name)
         if self._uncertain:
             self._enter_scatter(number, outcome)
+        self._enter_conditions(number, outcome)
         for method, values in outcome.speeds.items():
             arrays["at_speeds.value"][number] = values
             arrays["at_speeds.message"][number] = self._once(outcome.speed_message)
@@ -96,12 +100,9 @@ class DatasetBuilder:
             notes="\n".join([*road_notes(study), *self._notes.texts(tuple(study.layouts))]),
         )
         if study.baseline is not None:
-            base = data["value"].sel(layout=study.baseline, drop=True)
-            base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
-            data["improvement"][:] = (100.0 * (1.0 - data["value"] / base)).transpose(*data["value"].dims).values
-            of_base = data["error_bound"].sel(layout=study.baseline, drop=True)
-            widest = 100.0 * abs(data["value"] / base) * (data["error_bound"] + of_base) / (1.0 - of_base)
-            data["improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*data["value"].dims).values
+            _enter_improvements(data, study.baseline)
+            if study.conditions:
+                _enter_improvements(data, study.baseline, IN_CONDITIONS)
             self._enter_comparisons()
         if "at_speeds.value" in data:
             data["at_speeds.value"].attrs["methods"] = " ".join(self._by)
@@ -140,27 +141,38 @@ class DatasetBuilder:
         arrays["over_linear"][number], arrays["over_linear_error"][number] = over
         for m, method in enumerate(study.evaluate) if study.baseline is not None else ():
             if outcome.standard_errors.get(method, {}).get(outcome.index) is not None:
-                self._samples[number, m] = np.array(outcome.samples.get(method, ()))
+                self._samples["", (number, m)] = np.array(outcome.samples.get(method, ()))
                 if controls := outcome.controls.get(method):
                     self._controls[number, m] = np.array(controls)
 
+    def _enter_conditions(self, number: int, outcome: Outcome) -> None:
+        arrays, baseline = self._arrays, self.study.baseline
+        for m, method in enumerate(self.study.evaluate):
+            known = outcome.in_conditions.get(method, ()) if outcome.feasible_values(method) else ()
+            for c, found in enumerate(known):
+                for name in ("value", "error_bound", "standard_error"):
+                    arrays[f"{IN_CONDITIONS}{name}"][number, m, c] = np.nan if found[name] is None else found[name]
+                if self._uncertain and baseline is not None and found["standard_error"] is not None:
+                    self._samples[IN_CONDITIONS, (number, m, c)] = np.array(found["samples"])
+
     def _enter_comparisons(self) -> None:
         """Improvements of values that scatter: by the differences on the same roads, with their standard errors."""
-        for number, m in self._samples:
-            case = self.cases[number]
-            base = self.cases.number(replace(case, layout=str(self.study.baseline)))
-            values = [float(self._arrays["value"][place, m]) for place in (number, base)]
-            if number != base and (base, m) in self._samples and np.isfinite(values).all():
-                two = self._compare(number, base, m)
-                self._arrays["improvement"][number, m] = -two.percent
-                self._arrays["improvement_error"][number, m] = two.percent_error
+        for of, place in self._samples:
+            number, *labels = place
+            base = self.cases.number(replace(self.cases[number], layout=str(self.study.baseline)))
+            both = [(of, place), (of, (base, *labels))]
+            values = [float(self._arrays[f"{of}value"][at]) for _, at in both]
+            if number != base and both[1] in self._samples and np.isfinite(values).all():
+                two = self._compare(*both)
+                self._arrays[f"{of}improvement"][place] = -two.percent
+                self._arrays[f"{of}improvement_error"][place] = two.percent_error
 
-    def _compare(self, number: int, base: int, m: int) -> Comparison:
-        """Comparison of a case with another one, on the roads that both have."""
-        count = min((size for place in (number, base) if (size := self._samples[place, m].size)), default=0)
-        known = [self._controls.get((place, m), np.zeros(0)) for place in (number, base)]
+    def _compare(self, *both: _Scattered) -> Comparison:
+        """Comparison of a value with another one, on the roads that both have."""
+        count = min((size for key in both if (size := self._samples[key].size)), default=0)
+        known = [self._controls.get(place, np.zeros(0)) for _, place in both]
         size = max(one.size for one in known)
-        one, other = (self._estimate(place, m, count) for place in (number, base))
+        one, other = (self._estimate(key, count) for key in both)
         controls = [
             np.zeros(size) if estimate.standard_error == 0.0 else own
             for own, estimate in zip(known, (one, other), strict=True)
@@ -169,10 +181,22 @@ class DatasetBuilder:
             return compare_estimates(one, other)
         return compare_estimates(one, other, [(own[:count], own[count:]) for own in controls])
 
-    def _estimate(self, number: int, m: int, count: int) -> Estimate:
+    def _estimate(self, key: _Scattered, count: int) -> Estimate:
         """Estimate of a case's own index with its first samples."""
-        value, error = (float(self._arrays[name][number, m]) for name in ("value", "standard_error"))
-        return Estimate(value, "", standard_error=error, samples=tuple(self._samples[number, m][:count].tolist()))
+        of, place = key
+        value, error = (float(self._arrays[f"{of}{name}"][place]) for name in ("value", "standard_error"))
+        return Estimate(value, "", standard_error=error, samples=tuple(self._samples[key][:count].tolist()))
+
+
+def _enter_improvements(data: xr.Dataset, baseline: str, of: str = "") -> None:
+    """Improvements over the baseline and their bounds; `of` begins the names of the variables."""
+    values, bounds = data[f"{of}value"], data[f"{of}error_bound"]
+    base = values.sel(layout=baseline, drop=True)
+    base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
+    data[f"{of}improvement"][:] = (100.0 * (1.0 - values / base)).transpose(*values.dims).values
+    of_base = bounds.sel(layout=baseline, drop=True)
+    widest = 100.0 * abs(values / base) * (bounds + of_base) / (1.0 - of_base)
+    data[f"{of}improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*values.dims).values
 
 
 class Pending:
@@ -220,11 +244,13 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "parameter": len(parameters),
         "limit": len(study.limits),
         "at_speeds.speed": len(BESIDE),
+        CONDITION: len(study.conditions),
     }
     variables = {}
     uncertain, limited = UNCERTAIN if is_uncertain(study) else {}, LIMITED if study.limits else {}
     beside = SPEEDS if asks_at_one_speed(study) else {}
-    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited, **beside}.items():
+    varied = _conditions_of({**_VARIABLES, **uncertain}) if study.conditions else {}
+    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited, **beside, **varied}.items():
         dims = (*design, *more)
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
@@ -248,6 +274,10 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         coords["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
     if beside and study.road is not None:
         coords["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
+    if study.conditions:
+        shares = np.array([condition.share for condition in study.conditions])
+        coords[CONDITION] = (CONDITION, condition_labels(study.conditions), {"over": study.over})
+        coords[f"{IN_CONDITIONS}share"] = (CONDITION, shares / shares.sum())
     for sweep in study.sweeps:
         attributes = {
             "units": sweep.unit,
@@ -268,7 +298,7 @@ def is_uncertain(study: Study) -> bool:
     return not all(map(is_blind, study.methods))
 
 
-_VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+_VARIABLES: dict[str, _Variable] = {
     "value": (("method",), np.nan, "index at the optimum of that index"),
     "standard_error": (("method",), np.nan, "standard error of the value"),
     "error_bound": (("method",), np.nan, "largest relative error of the value, sampling apart"),
@@ -287,24 +317,37 @@ _VARIABLES: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
 }
 
 
-LIMITED: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+LIMITED: dict[str, _Variable] = {
     "limit_value": (("limit",), np.nan, "what is limited, where it comes closest to its limit"),
     "limit_active": (("limit",), False, "whether the limit holds the optimum back"),
     "limit_cost": (("limit",), np.nan, "change of the index for one per cent more of the limit"),
     "limit.part": (("limit",), "", "tyre or strut that comes closest, of a limit on each"),
 }
-UNCERTAIN: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+UNCERTAIN: dict[str, _Variable] = {
     "improvement_error": (("method",), np.nan, "standard error of the improvement"),
     "realisations": (("method",), 0, "random roads that were averaged"),
     "over_linear": ((), np.nan, "improvement over the best linear design by the method of the search"),
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
 # names with a point, which no element can have, so that a sweep of any element has its own dimension
-SPEEDS: dict[str, tuple[tuple[str, ...], float | int | str, str]] = {
+SPEEDS: dict[str, _Variable] = {
     "at_speeds.value": (("at_speeds.speed",), np.nan, "index of the same design at other speeds"),
     "at_speeds.message": ((), "", "what makes those values doubtful"),
 }
-PERCENT = {"limit_cost", "improvement", "improvement_bound", "improvement_error", "over_linear", "over_linear_error"}
+IN_CONDITIONS, CONDITION = "in_conditions.", "in_conditions.condition"
+_VARIED = ("value", "standard_error", "error_bound", "improvement", "improvement_bound", "improvement_error")
+PERCENT = {"limit_cost", "over_linear", "over_linear_error"} | {
+    f"{of}improvement{end}" for of in ("", IN_CONDITIONS) for end in ("", "_bound", "_error")
+}
+
+
+def _conditions_of(variables: Mapping[str, _Variable]) -> dict[str, _Variable]:
+    """Variables in each condition, of those that are the index over all of them."""
+    return {
+        f"{IN_CONDITIONS}{name}": ((*more, CONDITION), empty, f"{words}, in each condition")
+        for name, (more, empty, words) in variables.items()
+        if name in _VARIED
+    }
 
 
 def _status(outcome: Outcome, kind: str) -> str:

@@ -11,7 +11,8 @@ import xarray as xr
 
 from inerter.atomic_io import open_text
 from inerter.files.study.cases import Case, cases
-from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
+from inerter.files.study.conditions import condition_labels
+from inerter.files.study.results import IN_CONDITIONS, PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
 from inerter.formatting import label_with_unit
 from inerter.table import csv_cells
@@ -49,6 +50,11 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
             for text in (label_with_unit(limit.words, limit.unit), f"cost of {limit.words}_percent")
         ),
         *(f"part of {study.limits[i].words}" for i in _on_parts(data)),
+        *(
+            text
+            for label in condition_labels(study.conditions)
+            for text in (f"value in {label}", f"improvement in {label}_percent")
+        ),
     ]
 
 
@@ -95,4 +101,9 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
             *row["other_value"],
             *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
             *(row["limit.part"][i] for i in parts),
+            *(
+                row[f"{IN_CONDITIONS}{name}"][i]
+                for i in range(len(study.conditions))
+                for name in ("value", "improvement")
+            ),
         ]

@@ -12,7 +12,7 @@ from inerter.files.common.entries import MOST_POINTS, check_ascending, quantity_
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.conditions import StudyCondition, following, what_of
+from inerter.files.study.conditions import StudyCondition, condition_labels, following, what_of
 from inerter.files.study.limits import limit_words
 from inerter.files.study.place import Place, Sweep, element_at, place_of
 from inerter.files.study.places import number_at, with_numbers
@@ -127,10 +127,13 @@ def conditions_of(study: Study, entries: Sequence[Any]) -> tuple[tuple[StudyCond
                 place = place_of(label)
                 numbers[place.label] = _number(study, place, given)
                 problems += _not_followed(study, where, {place.label: numbers[place.label]})
-        if entry.name and entry.name in [known.name for known in conditions]:
-            got = f"{entry.name!r}, the name of another condition"
-            problems.append(at((f"{_CONDITIONS}[{i}]", "name"), got=got, expected="a different name"))
         conditions.append(StudyCondition(numbers, entry.share, entry.name or ""))
+    labels = condition_labels(conditions)
+    for i, condition in enumerate(conditions, start=1):
+        unnamed = [label for one, label in zip(conditions[i:], labels[i:], strict=True) if not one.name]
+        if condition.name in [*labels[: i - 1], *unnamed]:
+            got = f"{condition.name!r}, the name of another condition"
+            problems.append(at((f"{_CONDITIONS}[{i}]", "name"), got=got, expected="a different name"))
     for i, condition in enumerate(conditions, start=1):
         for label in condition.numbers.keys() & study.swept_labels:
             both = f"{label} is swept, and in a condition"

@@ -12,6 +12,7 @@ import pytest
 import scipy
 from campaigns import sampled
 from folders import EXAMPLES
+from study_text import HALF_CAR, study_text, with_changes
 from wang_su import J1, paper_quarter_car
 
 import inerter as it
@@ -59,13 +60,81 @@ def test_of_a_study_with_conditions_the_vehicle_is_that_of_the_file(
     loads = "\n".join(f'[[conditions]]\nvehicle.sprung_mass = "{mass} kg"\n' for mass in (150, 250))
     (folder / "loads.toml").write_text(f"{REAL}\n{loads}", encoding="utf-8")
     assert call(["export", "loads.toml", "--to", "matlab", "--linear", "-o", "loads.mat"]) == 0
-    assert "those of the file itself, not of one of its conditions" in " ".join(capsys.readouterr().err.split())
+    said = " ".join(capsys.readouterr().err.split())
+    assert "those of the file itself, not of one of its conditions; --condition chooses one" in said
     assert call(["export", "real.toml", "--to", "matlab", "--linear", "-o", "real.mat"]) == 0
     assert "conditions" not in capsys.readouterr().err
     titles = {name: str(scipy.io.loadmat(folder / f"{name}.mat")["title"][0]) for name in ("loads", "real")}
     assert titles["loads"] == f"{titles['real']}, with the numbers outside the conditions"
     one, other = (scipy.io.loadmat(folder / f"{name}.mat") for name in ("loads", "real"))
     assert np.array_equal(one["A"], other["A"])
+
+
+BUS = study_text(
+    'indices = ["J1"]',
+    vehicle=HALF_CAR,
+    elements='k = "40 kN/m"\nc = "1 kN s/m"\nb = "140 kg"\nk2 = { tied = "0.5 * k" }',
+    layouts='S3 = "k | c - b | k2"',
+).replace('model = "quarter-car"\n', "", 1)
+LADEN = [('sprung_mass = "363.5 kg"', 'sprung_mass = "800 kg"'), ('k = "40 kN/m"', 'k = "55 kN/m"')]
+SLOW = ('speed = "25 m/s"', 'speed = "15 m/s"')
+LOADS = """[[conditions]]
+[[conditions]]
+name = "laden"
+vehicle.sprung_mass = "800 kg"
+k = "55 kN/m"
+road.speed = "15 m/s"
+"""
+
+
+@pytest.mark.parametrize("kind", ["matlab", "csv"])
+def test_a_condition_is_exported_as_the_study_of_its_numbers(
+    kind: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Masses, elements and what is tied to them, and in tables the delay between the axles."""
+    files = {"loads": BUS.replace("[study]", f"{LOADS}[study]"), "one": BUS, "two": with_changes(BUS, *LADEN, SLOW)}
+    for name, text in files.items():
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    for name in ("one", "two"):
+        assert call(["export", f"{name}.toml", "--to", kind]) == 0
+    for condition, name in (("1", "one"), ("laden", "two")):
+        assert call(["export", "loads.toml", "--to", kind, "--condition", condition]) == 0
+        assert "conditions" not in capsys.readouterr().err
+        path = folder / f"loads-S3-condition-{1 if name == 'one' else 2}{it.EXPORTS[kind].suffixes[0]}"
+        alone = folder / f"{name}-S3{path.suffix}"
+        if kind == "matlab":
+            found, expected = scipy.io.loadmat(path), scipy.io.loadmat(alone)
+            assert str(found["title"][0]).endswith(f", in condition {condition}")
+            assert np.array_equal(found["A"], expected["A"])
+        else:
+            found, expected = ([line for line in p.read_text().splitlines() if line[:1] != "#"] for p in (path, alone))
+            assert found == expected
+    curves = [(folder / f"{name}-S3{it.EXPORTS[kind].suffixes[0]}").read_bytes() for name in ("one", "two")]
+    assert curves[0] != curves[1]
+
+
+def test_tables_of_a_point_of_a_sweep_are_those_at_its_speed(folder: Path) -> None:
+    sweep = 'sweep = { road.speed = ["25 m/s", "15 m/s"] }'
+    for name, text in (("swept", f"{BUS}{sweep}\n"), ("slow", with_changes(BUS, SLOW))):
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    assert call(["export", "swept.toml", "--to", "csv", "--point", "2"]) == 0
+    assert call(["export", "slow.toml", "--to", "csv"]) == 0
+    found, expected = ((folder / f"{name}.csv").read_text().splitlines() for name in ("swept-S3-point-2", "slow-S3"))
+    assert [line for line in found if line[:1] != "#"] == [line for line in expected if line[:1] != "#"]
+
+
+@pytest.mark.parametrize(
+    ("given", "text", "says"),
+    [("ladn", LOADS, 'has no condition "ladn", but 1, laden. Did you mean "laden"?'), ("1", "", "has no conditions")],
+)
+def test_a_condition_that_is_not_there_is_refused(
+    given: str, text: str, says: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "loads.toml").write_text(BUS.replace("[study]", f"{text}[study]"), encoding="utf-8")
+    for command in (["export", "loads.toml", "--to", "matlab"], ["plot", "loads.toml", "--kind", "bode"]):
+        assert call([*command, "--condition", given]) == 2
+        assert says in " ".join(capsys.readouterr().err.split())
+    assert not list(folder.glob("loads-*"))
 
 
 def _stiffer(path: Path) -> None:

@@ -13,7 +13,7 @@ from inerter.exports.export import check_suffix, export_contents
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import ExportSpec
 from inerter.files.common.folder import check_single, single
-from inerter.files.study.chosen_design import WITHOUT_CONDITIONS, chosen_design
+from inerter.files.study.chosen_design import CHOOSE_ONE, WITHOUT_CONDITIONS, chosen_design
 
 _BY = "export"
 
@@ -24,6 +24,7 @@ def export(
     layout: str | None,
     index: str | None,
     point: int | None,
+    condition: str | None,
     output: Path | None,
     options: Mapping[str, Any],
     *,
@@ -38,14 +39,13 @@ def export(
     else:
         check_suffix(kind, f"design{kind.suffixes[0]}" if kind.is_file else "design")
     with interruptible():
-        design = chosen_design(source, layout, index, point)
+        design = chosen_design(source, layout, index, point, condition)
         stem = source.stem if source.is_file() else source.resolve().name
         name = "-".join([stem, design.name, *([part] if part else [])])
         path = output or Path(f"{name}{kind.suffixes[0]}")
         check_single(path, by=_BY, inputs=design.inputs, force=force)
-        numbers = ["with the numbers outside the conditions"] if design.study.conditions else []
-        names = [" ".join(design.study.title.split()), design.case.name, *([part] if part else []), *numbers]
-        indices = {design.case.index: design.study.index(design.case.index)}
+        titles = " ".join(design.study.title.split()), design.case.name, part, design.conditions_text
+        indices = {design.case.index: design.index}
         request = ExportSpec(
             design.vehicle(),
             to,
@@ -53,11 +53,11 @@ def export(
             speed=None if speed is None else positive_option("speed", speed, "m/s"),
             indices=indices,
             conventions=design.study.conventions,
-            title=", ".join(names),
+            title=", ".join(filter(None, titles)),
         )
         contents = export_contents(kind, request, path)
         with single(path, by=_BY, inputs=design.inputs, force=force) as draft:
             draft.write_bytes(contents)
     say(f"{kind.description}: {path}")
-    if design.study.conditions:
-        say(WITHOUT_CONDITIONS)
+    if design.study.conditions and condition is None:
+        say(f"{WITHOUT_CONDITIONS}; {CHOOSE_ONE}")

@@ -22,6 +22,7 @@ from inerter.cli.interrupts import came, heed, interruptible, tell
 from inerter.cli.options import (
     OWN,
     UNCHANGED,
+    AtCondition,
     BestFor,
     ClusterOptions,
     Force,
@@ -319,6 +320,7 @@ def export(
     layout: Annotated[str | None, Parameter(help="Layout; optional if there is only one.")] = None,
     index: BestFor = None,
     point: SweepPoint = None,
+    condition: AtCondition = None,
     only: Annotated[
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
@@ -358,7 +360,7 @@ def export(
     from inerter.cli.export import export as command
 
     options = {"outputs": only or None, "part": part, "linear": linear, "platforms": platform}
-    command(source, to, layout, index, point, output, options, speed=speed, force=force)
+    command(source, to, layout, index, point, condition, output, options, speed=speed, force=force)
 
 
 @app.command(
@@ -384,6 +386,7 @@ def plot(
     ] = (),
     index: BestFor = None,
     point: SweepPoint = None,
+    condition: AtCondition = None,
     input: Annotated[
         str | None, Parameter(help="Input of a response, such as road; default: that of the index.")
     ] = None,
@@ -408,7 +411,7 @@ def plot(
     from inerter.cli.plot import PlotOptions
     from inerter.cli.plot import plot as command
 
-    command(source, kind, PlotOptions(layout, index, point, input, only, window), output, force=force)
+    command(source, kind, PlotOptions(layout, index, point, condition, input, only, window), output, force=force)
 
 
 @app.command(

@@ -17,7 +17,7 @@ from inerter.files.common.folder import check_single, single
 from inerter.files.common.suggest import some
 from inerter.files.simulation import running as simulations
 from inerter.files.simulation.loading import load_simulation
-from inerter.files.study.chosen_design import chosen_designs, load_results
+from inerter.files.study.chosen_design import CHOOSE_ONE, WITHOUT_CONDITIONS, chosen_designs, load_results
 from inerter.files.study.running import DATASET
 
 _BY = "plot"
@@ -31,6 +31,7 @@ class PlotOptions:
     layout: tuple[str, ...] = ()
     index: str | None = None
     point: int | None = None
+    condition: str | None = None
     input: str | None = None
     only: tuple[str, ...] = ()
     window: str | None = None
@@ -44,7 +45,7 @@ class PlotOptions:
 
 
 _USED: Mapping[PlotSource, tuple[str, ...]] = {
-    PlotSource.DESIGNS: ("layout", "index", "point", "input", "only"),
+    PlotSource.DESIGNS: ("layout", "index", "point", "condition", "input", "only"),
     PlotSource.MOTION: ("only", "window"),
     PlotSource.RESULTS: ("index",),
 }
@@ -75,10 +76,12 @@ def plot(source: Path, kind: str, options: PlotOptions, output: Path | None, *, 
 
 def _designs(source: Path, options: PlotOptions) -> tuple[DesignsToPlot, tuple[Path, ...]]:
     """The layouts that were named, or all, with their best values for an index."""
-    chosen = chosen_designs(source, options.layout, options.index, options.point)
+    chosen = chosen_designs(source, options.layout, options.index, options.point, options.condition)
     first = next(iter(chosen.values()))
     vehicles = {name: design.vehicle() for name, design in chosen.items()}
-    return DesignsToPlot(vehicles, first.study.index(first.case.index), options.input, options.only), first.inputs
+    if first.study.conditions and options.condition is None:
+        say(f"{WITHOUT_CONDITIONS}; {CHOOSE_ONE}")
+    return DesignsToPlot(vehicles, first.index, options.input, options.only), first.inputs
 
 
 def _motion(source: Path, options: PlotOptions) -> tuple[MotionToPlot, tuple[Path, ...]]:

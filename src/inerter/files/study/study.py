@@ -149,6 +149,11 @@ class Study(Settings):
         use = Conditions(condition_of(self, condition) for condition in self.conditions)
         return use.mean(index) if self.over == OVER[0] else use.worst(index)
 
+    def in_condition(self, number: int) -> Study:
+        """Study with the numbers of one of its conditions in place of its own, and without conditions."""
+        changed = [(place_of(label), value) for label, value in self.conditions[number].numbers.items()]
+        return replace(with_numbers(self, changed), conditions=())
+
     def in_each(self, index: IndexLike) -> list[IndexLike]:
         """List of an index in each condition separately; of the index alone without conditions."""
         return [Conditions([condition_of(self, c)]).mean(index) for c in self.conditions] or [index]

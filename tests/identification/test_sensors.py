@@ -59,3 +59,18 @@ def test_where_a_table_starts_is_as_uncertain_as_the_encoder_reads(seed: int) ->
     true = [given.motion.smooth(read(motion, step, noise, random))[0] for _ in range(READINGS)]
     among = slice(wait + 3, wait + 40)
     assert since_the_start(drawn, among) == pytest.approx(since_the_start(true, among), rel=0.25)
+
+
+@pytest.mark.parametrize("fastest", [40.0, 100.0])
+def test_rounding_is_drawn_again_where_few_samples_in_a_period_leave_it_in_the_smoothed_motion(fastest: float) -> None:
+    """A filter that passes most errors leaves the motion near the steps that were read, where none would be drawn."""
+    random = np.random.default_rng(12)
+    step, time = 1e-6, INTERVAL * np.arange(1200)
+    motion = 2e-4 * (1.0 - np.cos(71.0 * time)) + 3e-5 * (1.0 - np.cos(2.0 * np.pi * fastest * time))
+    given = experiment(motion, step, 0.05 * step, random)
+    true = given.motion.smooth(motion)[0]
+    drawn = simulate_measurement(given, periodic_displacement(given), given.record.force, random).motion
+    again = drawn.displacement - given.motion.smooth(given.motion.displacement)[0]
+    among = slice(100, 1100)
+    expected = given.motion.smooth(read(motion, step, 0.05 * step, random))[0] - true
+    assert np.std(again[among]) == pytest.approx(np.std(expected[among]), rel=0.2)

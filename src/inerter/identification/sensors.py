@@ -100,20 +100,29 @@ def encoder_noise(experiment: Experiment) -> float:
     if record.displacement_noise is not None:
         return record.displacement_noise
     taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
-    return taken / math.sqrt(1.0 - min(2.0 * motion.bandwidth * record.interval, 0.8))
+    return taken / math.sqrt(1.0 - passed_share(experiment))
+
+
+def passed_share(experiment: Experiment) -> float:
+    """Share of the variance of white errors of the displacement that the smoothed motion has."""
+    return min(2.0 * experiment.motion.bandwidth * experiment.record.interval, 0.8)
 
 
 def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: np.random.Generator) -> Matrix:
     """Possible distance [m] of the table from each sample when it was read.
 
     At the start, a smoothed motion equals the sample: it lies on a step of the encoder, and would be read again without
-    an error. Later it crosses many steps, and the filter resolves the position between them.
+    an error. Later it crosses many steps, and the filter resolves the position between them, but for the share of their
+    errors that it passes: with few samples in a period it lies near the steps again.
     """
     gone = np.abs(moved - moved[0]) > step
     left = int(np.argmax(gone)) if gone.any() else moved.size
     memory = math.ceil(1.0 / (experiment.motion.bandwidth * experiment.record.interval))
     start = np.arange(moved.size) < max(left, memory)
-    return np.where(start, step * random.spawn(1)[0].uniform(-0.5, 0.5), 0.0)
+    smoothed = moved == experiment.motion.displacement  # a periodic motion has no such errors
+    common, own = random.spawn(2)
+    passed = step * math.sqrt(passed_share(experiment)) * own.uniform(-0.5, 0.5, moved.size)
+    return np.where(start, step * common.uniform(-0.5, 0.5), np.where(smoothed, passed, 0.0))
 
 
 def _usual_rms(values: Matrix) -> float:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from importlib import import_module
 from inspect import isclass
+from math import nan
 from pathlib import Path
 from pkgutil import iter_modules
 from types import ModuleType
 from typing import get_args
 
 import pytest
+import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -36,8 +38,11 @@ from inerter.report.options import _OPTIONS
 from inerter.statements import Severity, Statement, by_severity, exit_code
 
 UNRELIABLE = Status(StatusKind.INACCURATE, "the residual is 3 times the sensor noise")
-MISSING = StudyResult(Path(), *[None] * 2, 1, failed=True)  # type: ignore[arg-type,list-item]
-COMPLETE = StudyResult(Path(), *[None] * 2, 1)  # type: ignore[arg-type,list-item]
+COMPLETE, ONE_INDEX_WITHOUT = (
+    StudyResult(Path(), None, xr.Dataset({"value": (("layout", "index"), v)}, {"index": ["J1", "J3"]}), 4)  # type: ignore[arg-type]
+    for v in ([[nan, 600.0], [1.0, nan]], [[nan, 600.0], [nan, nan]])
+)
+MISSING = replace(COMPLETE, failed=True)
 NOTES = [Note("friction taken as a damper of ", 1234.5, " N s/m"), Finding(RecordFinding.SIGN), OK]
 ENTRY = at(["elements", "k"], got='"600"', fault="no unit", expected="a stiffness", hint="Write 600 N/m.")
 CATALOGUES = [
@@ -53,6 +58,7 @@ CATALOGUES = [
         (NOTES, 0),
         ([COMPLETE.status], 0),
         ([Identifiability("f", Verdict.BELOW, "N", (0.0, 3.0))], 0),
+        ([ONE_INDEX_WITHOUT.status], 1),
         ([UNRELIABLE], 1),
         ([*NOTES, UNRELIABLE], 1),
         ([Identifiability("f", Verdict.WITHHELD)], 1),

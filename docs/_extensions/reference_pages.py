@@ -232,8 +232,8 @@ def _escape_bars(app: Sphinx, what: str, name: str, thing: Any, options: Any, li
 
 def _commands() -> Iterator[str]:
     yield "# Commands\n"
-    yield "What `inerter COMMAND --help` prints. Exit codes: 0 success, 1 failed computation or unreliable fit, "
-    yield "2 invalid input, 130 interrupted by Ctrl-C.\n"
+    yield "What `inerter COMMAND --help` prints. Exit codes: 0 success, 1 failed computation, no feasible design or "
+    yield "unreliable fit, 2 invalid input, 130 interrupted by Ctrl-C.\n"
     for name in commands():
         yield f"## inerter {name}\n"
         yield f"```text\n{_help(name)}\n```\n"

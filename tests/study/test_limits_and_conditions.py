@@ -26,7 +26,7 @@ from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.parts import run_part
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import dataset
-from inerter.files.study.running import run_study
+from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.indices.registry import INDICES
 from inerter.networks.elements.values import NAME
@@ -37,6 +37,7 @@ from inerter.report.problem_statement import condition_rows
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH
 from inerter.report.verdicts import verdict_sentences
+from inerter.statements import exit_code
 from inerter.tasks.budgets import BudgetPart
 from inerter.tasks.tolerances import TolerancePart
 
@@ -115,10 +116,34 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     result = run_study(study, tmp_path / "out")
     assert np.isnan(result.data["value"]).all()
     assert np.isfinite(result.data["parameter_value"].sel(layout="S3")).all()  # of the nearest design
-    assert not result.failed
+    assert (result.failed, result.status.kind.value, exit_code([result.status])) == (False, "infeasible", 1)
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
     assert verdict_sentences(result.data) == ["No strut keeps the limits, so that none is best in ride comfort (J1)."]
     assert "the nearest design" in report(result.data, study, tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("settings", "code"),
+    [
+        ('subject_to = { J3 = { at_most = "10 N" } }', 1),
+        ('subject_to = { J3 = { at_most = "900 N" } }', 0),
+        (
+            'subject_to = { J3 = { at_most = "10 N" } }\nsweep = { "study.subject_to.J3.at_most" = ["10 N", "900 N"] }',
+            0,
+        ),
+        ('subject_to = { J3 = { at_most = "10 N" } }\nsweep = { "study.subject_to.J3.at_most" = ["10 N", "20 N"] }', 1),
+    ],
+)
+def test_a_study_without_any_feasible_design_has_no_answer(
+    load: Callable[..., Study], settings: str, code: int
+) -> None:
+    """So that its exit code is 1, unless some layout, at some point of a sweep, keeps the limits."""
+    elements = 'k = "30 kN/m"\nc = { from = "1 kN s/m", to = "3 kN s/m" }\nb = "20 kg"'
+    study = load(f'indices = ["J1"]\noptimise = "norm"\n{settings}', elements=elements)
+    outcomes = {case: run_case(study, case) for case in cases(study)}
+    found = StudyResult(study.path, study, dataset(study, outcomes), len(outcomes))
+    assert {one.kind for one in outcomes.values()} <= {"ok", "infeasible"}
+    assert exit_code([found.status]) == code
 
 
 @pytest.mark.parametrize("sections", ["", TWO], ids=["plain", "conditions"])

@@ -49,8 +49,8 @@ EXAMPLES = """Examples:
   inerter reproduce    lists the papers
   inerter serve    opens the workbench in the browser
 
-Exit codes: 0 success, 1 failed computation or unreliable fit, 2 invalid input,
-130 interrupted by Ctrl-C."""
+Exit codes: 0 success, 1 failed computation, no feasible design or unreliable
+fit, 2 invalid input, 130 interrupted by Ctrl-C."""
 
 app = App(
     name="inerter",

@@ -29,6 +29,7 @@ from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.task_registry import TASKS
 from inerter.files.study.tasks import Answer, Designs, TaskResults, by_task, journal_entry, parts_of
+from inerter.formatting import format_list
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.table import csv_rows, csv_text
 from inerter.work.checkpoints import Checkpoint, Row, join_checkpoints, resuming, storing_checkpoints
@@ -59,8 +60,15 @@ class StudyResult:
 
     @property
     def status(self) -> Status:
-        """`failed` if a case or a part has no number at all; the status of each design is a value of `data`."""
-        return Status(StatusKind.FAILED, "no number for some of the designs or answers") if self.failed else OK
+        """`failed` if a case or a part has no number at all, `infeasible` if no design has a value of some index.
+
+        The status of each design is a value of `data`.
+        """
+        if self.failed:
+            return Status(StatusKind.FAILED, "no number for some of the designs or answers")
+        values = self.data["value"]
+        lost = [index for index in values["index"].values.tolist() if np.isnan(values.sel(index=index).values).all()]
+        return Status(StatusKind.INFEASIBLE, f"no feasible design for {format_list(lost)}") if lost else OK
 
     @property
     def failures(self) -> list[str]:

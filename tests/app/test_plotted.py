@@ -36,6 +36,14 @@ def test_gain_and_phase_of_a_quarter_car_are_those_of_its_equations() -> None:
         assert np.abs(off).max() < 1e-8
 
 
+def test_the_response_of_a_seat_is_that_of_its_occupant() -> None:
+    """Not of the body, whose acceleration is drawn of a car without a seat."""
+    for name, part in (("seat", "occupant"), ("quarter-car", "body")):
+        document = read((EXAMPLES / f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml")["study"]
+        [title] = {curve["title"] for curve in _response(document, indices=["J1"])["curves"]}
+        assert title == f"{part} acceleration per road velocity"
+
+
 @pytest.mark.parametrize("name", ["half-car", "full-car", "train"])
 def test_each_output_of_an_index_has_a_title_of_its_own(name: str) -> None:
     document = read((EXAMPLES / f"{name}.toml").read_text())["study"]

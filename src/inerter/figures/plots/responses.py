@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import DesignError, LinearSystemError
 from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import curve_looks
-from inerter.files.study.responses import gain_unit, output_weights, source_unit
+from inerter.files.study.responses import gain_unit, output_weights, response_in_words, source_unit
 from inerter.formatting import capital, in_words
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
@@ -64,7 +64,8 @@ def _system(
         system = problem.system(close(problem.descriptor, {}))
         definition = problem.definition
         unit = gain_unit(definition.unit, source_unit(mechanism, definition))
-        return system, problem.pade_order, output_weights(mechanism, definition), capital(response.response), unit
+        what = capital(response_in_words(response.response, definition))
+        return system, problem.pade_order, output_weights(mechanism, definition), what, unit
     source, output = response
     system = state_space(vehicle, source, output)
     moved = source in {road.name for road in mechanism.roads}

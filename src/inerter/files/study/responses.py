@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from inerter.errors import LinearSystemError, MechanismError
 from inerter.files.study.cases import Case
 from inerter.files.study.study import Study
-from inerter.formatting import format_number, format_quantity
+from inerter.formatting import format_number, format_quantity, in_words
 from inerter.indices.definition import IndexDefinition
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.methods.registry import is_blind
@@ -85,7 +85,7 @@ def index_responses(study: Study, found: Mapping[Case, Mapping[str, float]]) -> 
         mechanism = designs[next(iter(mine)), index].mechanism()
         unit = gain_unit(definition.unit, source_unit(mechanism, definition))
         names = list(output_weights(mechanism, definition))
-        every.append(IndexResponse(index, names, gains, angles, unit, _words(study, index)))
+        every.append(IndexResponse(index, names, gains, angles, unit, _words(study, index, definition)))
     return omega, every
 
 
@@ -108,11 +108,18 @@ def source_unit(mechanism: Mechanism, definition: IndexDefinition) -> str:
     return input_unit(mechanism, definition.input_paths(mechanism)[0].input)
 
 
-def _words(study: Study, index: str) -> str:
+def _words(study: Study, index: str, definition: IndexDefinition) -> str:
     """Frequency response of an index in words, with the excitation if the file states it."""
     own = study.own_indices.get(index)
     source = own.excited_by if own else ""
-    return f"gain from {source}" if source else study.index(index).response
+    return f"gain from {source}" if source else response_in_words(study.index(index).response, definition)
+
+
+def response_in_words(response: str, definition: IndexDefinition) -> str:
+    """Response of an index, with the only part whose acceleration it is, such as an occupant, in place of the body."""
+    part = definition.outputs[0].output.removesuffix("_acceleration")
+    is_body = len(definition.outputs) > 1 or part == "sprung"
+    return response if is_body else response.replace("body acceleration", f"{in_words(part)} acceleration")
 
 
 def _output_label(output: OutputWeight, own: str, unit: str) -> str:

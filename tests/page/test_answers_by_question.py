@@ -336,7 +336,7 @@ def test_the_tools_of_a_plot_stay_where_they_are_while_its_answer_comes(tab: str
         visitor.drawn()
         before = page.evaluate(TOOLS)
         with held(visitor):
-            page.fill("[id='entry elements.k']", f"{width} N/cm")
+            page.fill("[id='entry elements.k_f']", f"{width} N/cm")
             page.keyboard.press("Enter")
             page.wait_for_selector("#tab-panel .being .clock", state="attached")
             assert page.evaluate(TOOLS) == before, width

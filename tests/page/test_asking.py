@@ -222,7 +222,7 @@ def test_a_limit_on_several_struts_names_none_of_them(visitor: Visitor) -> None:
     page.wait_for_selector("text=half-car.toml is open")
     visitor.chosen()
     page.get_by_role("group", name="Struts").get_by_role("button", name="rear", exact=True).click()
-    page.fill("#network-text", "k | c_r")
+    page.fill("#network-text", "k_r | c_r")
     visitor.settled()
     page.click("#step-2")
     asked = page.locator(".asked")

@@ -215,10 +215,10 @@ def test_the_ranking_draws_the_struts_by_which_layouts_differ(
     tmp_path: Path, served: Served, visitors: Callable[..., Visitor]
 ) -> None:
     text = (EXAMPLES / "half-car.toml").read_text()
-    front = 'S3 = { front = "k | c_f - b_f", rear = "k | c_r - b_r" }'
+    front = 'S3 = { front = "k_f | c_f - b_f", rear = "k_r | c_r - b_r" }'
     assert front in text
     study = tmp_path / "study.toml"
-    study.write_text(text.replace(front, 'S3 = { front = "k | c_f - b_f", rear = "k | c_r" }'))
+    study.write_text(text.replace(front, 'S3 = { front = "k_f | c_f - b_f", rear = "k_r | c_r" }'))
     struts = "all => all.map(each => [...each.querySelectorAll('.of')].map(one => one.title))"
     for path, expected in {
         study: {"S1": ["front, rear"], "S2": ["front, rear"], "S3": ["front", "rear"]},

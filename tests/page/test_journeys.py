@@ -228,6 +228,8 @@ def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: 
     page.fill("#network-text", "k | c | b")
     page.wait_for_selector("[data-connection=lost]")
     assert page.locator("[data-path]").count() == 3  # drawn without any server
+    page.wait_for_selector("#verdict:has-text('Not computed')")
+    assert page.locator(".being progress").count() == 0
     page.fill("[id='entry elements.k']", "100 kN/m")
     page.keyboard.press("Enter")
     served.begin()

@@ -158,8 +158,8 @@ def test_a_car_of_two_struts_says_at_which_the_network_is_free_and_has_limits_in
     page.get_by_role("button", name="More networks").click()
     form = page.locator("form.begin", has_text="Search for the best network")
     for name, front, rear, told in (
-        ("at rear", "k | c_f - b_f", "k | any", "Free at rear. At front: k | c_f - b_f."),
-        ("the same at front and rear", "k | any", "k | any", "Free at front and rear, the same network"),
+        ("at rear", "k_f | c_f - b_f", "k_r | any", "Free at rear. At front: k_f | c_f - b_f."),
+        ("the same at front and rear", "k_f | any", "k_r | any", "Free at front and rear, the same network"),
     ):
         form.get_by_role("button", name=name, exact=True).click()
         form.locator("p.quiet", has_text=told).wait_for()

@@ -28,15 +28,15 @@ import { open, studiesFirst } from "./remembering.js";
 /** @import { Api } from "./api.js" */
 
 /** What is below the vehicle in motion: a tab a row. Those `ofDesign` need the values of a network, which a free
- * network has not yet. */
+ * network has not yet; those that are `long` are enlarged where work begins, and leave the vehicle its place again. */
 const TABS = [
   { key: "response", title: "Response", Panel: ResponsePanel },
   { key: "history", title: "On the road", Panel: HistoryPanel, ofDesign: true },
   { key: "compare", title: "Compare", Panel: ComparePanel },
   { key: "margins", title: "Break-even", Panel: MarginsPanel, ofDesign: true },
   { key: "tolerance", title: "Tolerances", Panel: TolerancePanel, ofDesign: true },
-  { key: "work", title: "Jobs", Panel: WorkPanel },
-  { key: "rig", title: "Rig", Panel: RigPanel },
+  { key: "work", title: "Jobs", Panel: WorkPanel, long: true },
+  { key: "rig", title: "Rig", Panel: RigPanel, long: true },
 ];
 
 /** @param {{store: Store, api: Api, enter: (token: string) => void}} props */
@@ -199,19 +199,21 @@ function Tabs({ store, api }) {
   const { view, history: { present: { layout } } } = state;
   const shown = TABS.find(({ key }) => key === view.tab) ?? TABS[0];
   useEffect(() => bringIntoRow(document.getElementById(`tab-${shown.key}`)), [shown.key]);
+  /** @param {typeof TABS[number]} tab */
+  const turnTo = ({ key, long = false }) => store.look({ tab: key, tall: view.tall && (long || !shown.long) });
   /** @param {KeyboardEvent} event */
   function turn(event) {
     const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (step === undefined) return;
     const next = TABS[(TABS.indexOf(shown) + step + TABS.length) % TABS.length];
-    store.look({ tab: next.key });
+    turnTo(next);
     document.getElementById(`tab-${next.key}`)?.focus();
   }
   return html`<section class="panel tabs" data-keys="Tabs">
     <div class="head"><div role="tablist" aria-label="More answers" onKeyDown=${turn}>
-      ${TABS.map(({ key, title }) => html`<button type="button" role="tab" id=${`tab-${key}`} key=${key}
-        aria-selected=${key === shown.key} aria-controls="tab-panel" tabindex=${key === shown.key ? 0 : -1}
-          onClick=${() => store.look({ tab: key })}>${title}</button>`)}
+      ${TABS.map((tab) => html`<button type="button" role="tab" id=${`tab-${tab.key}`} key=${tab.key}
+        aria-selected=${tab === shown} aria-controls="tab-panel" tabindex=${tab === shown ? 0 : -1}
+          onClick=${() => turnTo(tab)}>${tab.title}</button>`)}
     </div><${Chip} on=${view.tall} set=${() => store.look({ tall: !view.tall })}
       aria-label="Enlarge" title="Enlarge: the whole height">⤢<//></div>
     <div role="tabpanel" id="tab-panel" aria-labelledby=${`tab-${shown.key}`} key=${shown.key}>

@@ -181,8 +181,11 @@ export function questions(state) {
 const keyed = (row) => ({ ...row, key: JSON.stringify(row.body) });
 
 /** What a panel shows: the answer to what it asks now. @param {State} state @param {string} panel */
-export const answerOf = (state, panel) =>
-  shownOf(state.answers[panel], questions(state).find((question) => question.panel === panel)?.key ?? null);
+export function answerOf(state, panel) {
+  const key = questions(state).find((question) => question.panel === panel)?.key ?? null;
+  const found = shownOf(state.answers[panel], key);
+  return state.connection === "lost" ? { ...found, lost: true } : found;
+}
 
 /** Whether an answer of before is still right about a layout, which does not depend on what was changed.
  * @param {State} state @param {string} panel @returns {(layout: string) => boolean} */

@@ -167,6 +167,9 @@ export const indexName = ({ symbol, title }) => (isWord(symbol) ? title : symbol
  * @param {string} between */
 export const indexWords = (index, between) => [...new Set([indexName(index), index.title])].join(between);
 
+/** An index as the title of an axis. @param {string} symbol @param {string} title */
+export const indexAxis = (symbol, title) => (isWord(symbol) ? title : `${title} ${symbol}`);
+
 /** What a `Select` of indices has to choose from. @param {{symbol: string, title: string}[]} indices */
 export const indexChoices = (indices) => indices.map((index) => [index.symbol, indexWords(index, ": ")]);
 

@@ -91,7 +91,7 @@ function Goal({ store }) {
 function Verdict({ state, blank }) {
   if (blank) return html`<section class="verdict wait" aria-label="Verdict" tabindex="-1" id="verdict">
     <b>No study is open</b></section>`;
-  const { is, value, sentence } = answerOf(state, "decision");
+  const { is, value, sentence, lost } = answerOf(state, "decision");
   const [problem] = problemsOf(state);
   /** @type {{sentence: string, severity: string, caveats: Caveat[]} | undefined} */
   const verdict = value?.verdict;
@@ -101,25 +101,29 @@ function Verdict({ state, blank }) {
   const unsearched = searched.length > 0 && value?.rows.length < 2; // nothing is wrong with what stands alone
   const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : unsearched ? none : "";
   const isStale = !failed && verdict?.severity === "answer" && staleLayouts(state).length > 0;
-  const kind = is === "coming" || failed === none ? "wait" : failed ? "none" : isStale ? "doubt"
+  const isOpen = failed === none || (!failed && verdict?.severity === "none" && unchosenLayouts(state).length > 0);
+  const kind = is === "coming" || isOpen ? "wait" : failed ? "none" : isStale ? "doubt"
     : (verdict?.severity ?? "answer");
-  const told = failed
-    || (verdict ? `${isStale ? "At values not re-optimised: " : ""}${verdict.sentence}` : "Under way");
+  const again = is === "coming" ? `${lost ? "Not computed" : "Computing again"}. Before: ` : "";
+  const told = failed || (verdict ? `${again}${isStale ? "At values not re-optimised: " : ""}${verdict.sentence}`
+    : lost ? "Not computed" : "Under way");
   return html`<section class=${`verdict ${kind}`} aria-label="Verdict" aria-live="polite" tabindex="-1" id="verdict"
-    data-severity=${kind}><b title=${told}>${is === "coming" && verdict ? `Computing again. Before: ${told}` : told}</b>
+    data-severity=${kind}><b title=${told}>${told}</b>
     <div class="row"><${ToOptimise} state=${state} />
       <${Caveats} caveats=${failed ? [] : (verdict?.caveats ?? [])} /></div></section>`;
 }
 
+/** The layouts with values that nobody has chosen. @param {State} state */
+const unchosenLayouts = (state) => allDesigns(state.history.present).filter(({ layout, ...design }) =>
+  !isSearched(state, layout) && unchosenIn(state, { layout, ...design }).length > 0).map(({ layout }) => layout);
+
 /** That layouts are compared at values that nobody has chosen, or that are optimal for another problem, and the button
  * that optimises all of them. @param {{state: State}} props */
 function ToOptimise({ state }) {
-  const stale = staleLayouts(state);
-  const unchosen = allDesigns(state.history.present).filter(({ layout, ...design }) => !isSearched(state, layout)
-    && unchosenIn(state, { layout, ...design }).length > 0);
+  const [stale, unchosen] = [staleLayouts(state), unchosenLayouts(state)];
   if (stale.length + unchosen.length === 0 || isBeingChosen(state)) return null;
   const title = stale.length > 0 ? `Values of ${stale.join(", ")} were optimised before the study or its goal changed.`
-    : `Nobody has chosen values of ${unchosen.map(({ layout }) => layout).join(", ")}.`;
+    : `Nobody has chosen values of ${unchosen.join(", ")}.`;
   return html`<button type="button" class="stale" title=${title} onClick=${() =>
     /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>${
     stale.length > 0 ? "Values not re-optimised" : "Values not chosen"}: <u>optimise all layouts</u></button>`;

@@ -7,9 +7,9 @@ import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
-import { placed, printed, rounded, scaled, shown, times, unitFor, withUnit } from "../state/scale.js";
+import { placed, printed, scaled, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
 import { takeAndTell } from "../working.js";
-import { indexChoices, indicesOf, isWord, signed } from "./answers.js";
+import { indexAxis, indexChoices, indicesOf, signed } from "./answers.js";
 import { Files } from "./files.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
@@ -78,16 +78,17 @@ export function FrontResult({ store, api, job }) {
       problem_digests });
     if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout });
   };
+  const { present } = store.get().history;
   return html`<${FrontView} about=${store.get().about} indices=${indices} fronts=${fronts} take=${take}
-      baseline=${result.baseline ?? baselineOf(store.get().history.present).layout} />
+      layout=${present.layout} baseline=${result.baseline ?? baselineOf(present).layout} />
     <${Files} store=${store} api=${api} job=${job} />`;
 }
 
-/** Fronts in a plot, with a card of the point that is looked at. Of three indices two are drawn, which can be chosen.
- * At first all fronts are drawn, or the first of them `alone`.
+/** Fronts in a plot, with a card of the point that is looked at: at first the knee of the front of `layout`. Of three
+ * indices two are drawn, which can be chosen. At first all fronts are drawn, or the first of them `alone`.
  * @param {{about: any, indices: {index: string, title: string, unit: string}[], fronts: Front[], baseline: string,
- * take: (entry: Entry) => void, alone?: boolean}} props */
-export function FrontView({ about, indices: all, fronts: every, baseline, take, alone = false }) {
+ * take: (entry: Entry) => void, layout?: string, alone?: boolean}} props */
+export function FrontView({ about, indices: all, fronts: every, baseline, take, layout, alone = false }) {
   const names = every.map(({ layout }) => layout);
   const [only, setOnly] = useChoice(alone ? [...names, ALL] : [ALL, ...names]);
   /** @type {Index[]} */
@@ -97,11 +98,12 @@ export function FrontView({ about, indices: all, fronts: every, baseline, take, 
   const [across, setAcross] = useChoice(symbols);
   const [up, setUp] = useChoice(symbols.filter((symbol) => symbol !== across));
   const fronts = useMemo(() => every.filter(({ layout }) => only === ALL || layout === only), [every, only]);
-  const plot = useMemo(() => declared(indices, [String(across), String(up)], fronts,
+  const plot = useMemo(() => declared(about, indices, [String(across), String(up)], fronts,
     coloursOf(names, baseline)), [indices, across, up, fronts, baseline]);
-  const knee = plot.points.findIndex(({ big, of }) => big && of.front.layout !== baseline);
+  const knees = plot.points.filter(({ big, of }) => big && of.front.layout !== baseline);
   const [picked, look] = useState(/** @type {number | null} */ (null));
-  const here = plot.points[picked ?? knee] ?? plot.points[0];
+  const here = plot.points[picked ?? -1] ?? knees.find(({ of }) => of.front.layout === layout) ?? knees[0]
+    ?? plot.points[0];
   /** @param {string} label @param {string | undefined} value @param {(index: string) => void} set */
   const axis = (label, value, set) => html`<${Select} label=${label} value=${value} set=${set}
     choices=${label === "across" ? symbols : symbols.filter((symbol) => symbol !== across)} />`;
@@ -116,7 +118,7 @@ export function FrontView({ about, indices: all, fronts: every, baseline, take, 
         ${symbols.length > 2 && [axis("across", across, setAcross), axis("up", up, setUp)]}
         ${every.length > 1 && html`<${Select} aria-label="Fronts that are drawn" value=${only}
           choices=${[ALL, ...names]} set=${setOnly} />`}<//>
-      <${Card} entry=${here.of} fronts=${every} indices=${indices} baseline=${baseline}
+      <${Card} about=${about} entry=${here.of} fronts=${every} indices=${indices} baseline=${baseline}
         take=${() => take(here.of)} /></div>
     <p class="quiet">${every.flatMap(({ layout, status, message }) => (message && isOk(status)
       ? [`${layout}: ${message}`] : [])).join(" ")} Lower left is better${symbols.length > 2
@@ -125,15 +127,15 @@ export function FrontView({ about, indices: all, fronts: every, baseline, take, 
       another front, K for the knee, Enter to take.</p>`}`;
 }
 
-/** Points of fronts over two of the indices; those of three do not lie on a line.
+/** Points of fronts over two of the indices; those of three do not lie on a line. @param {any} about
  * @param {Index[]} indices @param {string[]} drawn @param {Front[]} fronts @param {{[layout: string]: string}} colours
  * @returns {Declaration & {points: Place[]}} */
-function declared(indices, drawn, fronts, colours) {
+function declared(about, indices, drawn, fronts, colours) {
   const [first, second] = drawn;
   /** @param {string} symbol */
   const axis = (symbol) => {
     const { title = "", unit = "", factor = 1 } = indices.find(({ index }) => index === symbol) ?? {};
-    return { what: isWord(symbol) ? title : `${title} ${symbol}`, unit, size: 1 / factor, padded: true };
+    return { what: indexAxis(symbol, title), unit, size: 1 / factor, padded: true };
   };
   const all = fronts.map((front) => entriesOf(front).filter(({ point: { values } }) =>
     drawn.every((index) => typeof values[index] === "number")));
@@ -149,7 +151,7 @@ function declared(indices, drawn, fronts, colours) {
       const name = `${isOk(status) ? "" : `${status}: `}${layout}${isKnee ? ", the knee" : ""}`;
       const read = indices.map((each) => `${each.index} ${told(entry.point, each)} ${printed(each.unit)}`.trim());
       return { curve, x, y, big: isKnee, doubtful: !isOk(status), of: entry,
-        lines: [name, read.join(",  "), network ?? "", valuesIn(texts)].filter(Boolean),
+        lines: [name, read.join(",  "), network ?? "", valuesIn(about, texts)].filter(Boolean),
         label: `${[name, network].filter(Boolean).join(", ")}: ${read.join(", ")}; take it into the editor` };
     })),
   };
@@ -170,9 +172,6 @@ function told({ values, decimals }, { index, factor }) {
   return typeof places === "number" ? placed(value, places) : shown(value, 4);
 }
 
-/** Values of a design in few digits. @param {{[name: string]: string}} texts */
-export const valuesIn = (texts) => Object.entries(texts).map(([key, text]) => `${key} = ${rounded(text)}`).join(", ");
-
 /** @param {Front} front @returns {Entry[]} */
 const entriesOf = (front) => front.points.map((point, i) => ({ front, point, number: i + 1,
   isKnee: i === front.knee }));
@@ -192,8 +191,8 @@ function tableOf({ points }, indices) {
 }
 
 /** The point that is looked at: its indices against those of another design, its values, and what it costs.
- * @param {{entry: Entry, fronts: Front[], indices: Index[], baseline: string, take: () => void}} props */
-function Card({ entry, fronts, indices, baseline, take }) {
+ * @param {{about: any, entry: Entry, fronts: Front[], indices: Index[], baseline: string, take: () => void}} props */
+function Card({ about, entry, fronts, indices, baseline, take }) {
   const { front, point, number, isKnee } = entry;
   const { improvements } = point;
   const other = improvements ? null : referenceOf(entry, fronts, baseline);
@@ -210,7 +209,7 @@ function Card({ entry, fronts, indices, baseline, take }) {
         ${other && html`<td class="number">${told(other.point, each)}</td>`}
         ${improvements && html`<td class="number">${signed(improvements[each.index])}</td>`}</tr>`)}
     <//>
-    <p>${valuesIn(point.texts)}</p>
+    <p>${valuesIn(about, point.texts)}</p>
     ${other && html`<p>${sentenceOf(point, other, indices)}</p>`}
     <button type="button" class="edged" onClick=${take}>Take this point</button>
   </section>`;

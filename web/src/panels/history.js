@@ -10,7 +10,7 @@ import { Plot } from "../plot.js";
 import { layoutColours } from "../plots/colours.js";
 import { answerOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
-import { printed, shown } from "../state/scale.js";
+import { aligned, printed } from "../state/scale.js";
 import { problemsOf } from "./values.js";
 
 /** @import { Store } from "../state/store.js" */
@@ -78,8 +78,8 @@ function declared(value, document) {
         dash: of.dash, unnamed: true };
     }),
     ...shadesOf(value.shaded ?? []),
-    note: ({ size, unit }) => `${value.name ?? value.layout}: r.m.s. ${shown(rms / size, 4)}, peak ${
-      shown(peak / size, 4)} ${printed(unit)}${other}`,
+    note: ({ size, unit }) => `${value.name ?? value.layout}: r.m.s. ${aligned(rms / size, 4)}, peak ${
+      aligned(peak / size, 4)} ${printed(unit)}${other}`,
   };
 }
 

@@ -149,7 +149,7 @@ function Fit({ store, api, job, main }) {
         ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
           <th scope="row">${name}</th>
           ${[0, 1].map((i) => html`<td class="number">${result.shown[name][i]}</td>`)}
-          <td>${each.identified ? "" : each.sentence}</td></tr>`)}
+          <td>${each.identified ? "" : capital(each.sentence.replace(`${name}: `, ""))}</td></tr>`)}
       <//>
       ${(result.findings ?? []).map((/** @type {string} */ each) => html`<p key=${each} class="quiet">${each}</p>`)}
       ${result.device

@@ -11,13 +11,13 @@ import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf, strutTexts } from "../questions.js";
 import { entryAt, own, textOf } from "../state/document.js";
-import { estimated, printed, rounded, scaled, shown, strutWords, times, unitFor } from "../state/scale.js";
+import { estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
-import { indicesOf, percent } from "./answers.js";
+import { indexAxis, indicesOf, percent } from "./answers.js";
 import { Constraints } from "./asked.js";
 import { Files } from "./files.js";
 import { Sketch } from "./sketch.js";
-import { FrontView, valuesIn } from "./front.js";
+import { FrontView } from "./front.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -195,7 +195,7 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
       ({ of: network, status, message }))} />
     ${ranking.length === 0 && html`<p class="quiet">No network is optimised yet.</p>`}
-    ${frontier.length > 1 && html`<${Frontier} one=${one} baseline=${baseline} written=${written}
+    ${frontier.length > 1 && html`<${Frontier} about=${state.about} one=${one} baseline=${baseline} written=${written}
       take=${take} />`}
     ${ranking.length > 0 && html`<p class="quiet">The best ${ranking.length} ${complete
         ? `of ${networks} networks` : "so far"} (* at a bound)</p>
@@ -224,7 +224,8 @@ function NetworkRow({ state, row, rank, text, written: { unit, factor }, compare
   const { network, status, improvement_percent: part, ideal, same_values: same } = row;
   return html`<tr data-network=${network}>
     <th scope="row"><div class="found"><span>${rank}</span><${Sketch} state=${state} tree=${row.tree} />
-      <div><code>${network}</code><div class="scatter">${valuesOf(row)}</div></div></div></th>
+      <div><code>${network}</code><div class="scatter">${valuesIn(state.about, { ...row.elements, ...row.values },
+        row.active_bounds)}</div></div></div></th>
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
       ${text} <span class="unit">${printed(unit)}</span>
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
@@ -235,16 +236,17 @@ function NetworkRow({ state, row, rank, text, written: { unit, factor }, compare
 }
 
 /** The best value for each number of elements.
- * @param {{one: any, baseline: string | null, written: WrittenUnit, take: (row: Row) => void}} props */
-function Frontier({ one, baseline, written, take }) {
+ * @param {{about: any, one: any, baseline: string | null, written: WrittenUnit, take: (row: Row) => void}} props */
+function Frontier({ about, one, baseline, written, take }) {
   const [picked, look] = useState(/** @type {number | null} */ (null));
-  const plot = useMemo(() => frontierOf(one, baseline, written), [one, baseline]);
+  const plot = useMemo(() => frontierOf(about, one, baseline, written), [about, one, baseline]);
   return html`<${Plot} plot=${plot} picked=${picked} look=${look}
     take=${(/** @type {Point} */ { of }) => take(of)} />`;
 }
 
-/** @param {any} one @param {string | null} baseline @param {WrittenUnit} written @returns {Declaration} */
-function frontierOf({ index, title, frontier, baseline_value: base }, baseline, { unit, factor }) {
+/** @param {any} about @param {any} one @param {string | null} baseline @param {WrittenUnit} written
+ * @returns {Declaration} */
+function frontierOf(about, { index, title, frontier, baseline_value: base }, baseline, { unit, factor }) {
   const counts = frontier.map((/** @type {Row} */ { n_elements: count }) => count);
   const ends = [counts[0], counts.at(-1)];
   const below = typeof base === "number" ? [{ name: baseline ?? "", colour: "s1", dash: true, x: ends,
@@ -252,19 +254,14 @@ function frontierOf({ index, title, frontier, baseline_value: base }, baseline, 
   return {
     title: `${index} by number of elements`,
     x: { what: "Number of elements", unit: "", ticks: counts, padded: true },
-    y: { what: `${title} ${index}`, unit, size: 1 / factor, padded: true },
+    y: { what: indexAxis(index, title), unit, size: 1 / factor, padded: true },
     curves: [{ name: "best network", colour: "s3", x: counts,
       y: frontier.map((/** @type {Row} */ { value }) => value) }, ...below],
     points: frontier.map((/** @type {Row} */ row) => {
       const value = `${index} ${shown(times(row.value, factor), 4)} ${printed(unit)}`.trim();
       return { curve: 0, x: row.n_elements, y: row.value, doubtful: !isOk(row.status), of: row,
-        lines: [row.network, value, valuesIn({ ...row.elements, ...row.values })],
+        lines: [row.network, value, valuesIn(about, { ...row.elements, ...row.values })],
         label: `${row.network}: ${value}; take it into the editor` };
     }),
   };
 }
-
-/** The values of a network, and those of what else is free. @param {Row} row */
-const valuesOf = ({ elements, values, active_bounds: bounds }) =>
-  Object.entries({ ...elements, ...values }).map(([name, text]) =>
-    `${name} = ${rounded(String(text))}${name in bounds ? "*" : ""}`.replaceAll(" ", "\u00a0")).join(", ");

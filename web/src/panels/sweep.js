@@ -5,9 +5,11 @@ import { Doubts, isOk } from "../parts/doubts.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { numbersOf } from "../library.js";
 import { Plot } from "../plot.js";
+import { mapValues } from "../state/document.js";
 import { coloursOf } from "../plots/colours.js";
-import { printed, quantity, shown, times, unitFor, withUnit } from "../state/scale.js";
+import { printed, quantity, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
 import { membersOf, takeOptima } from "../working.js";
+import { indexAxis, indicesOf } from "./answers.js";
 import { Files } from "./files.js";
 
 /** @import { Store, Job } from "../state/store.js" */
@@ -43,9 +45,10 @@ export function SweepResult({ store, api, job }) {
   const isRelative = relative && own.some(({ layout, improvement_percent: part }) =>
     layout !== result.baseline && typeof part === "number");
   const { about } = store.get();
+  const { title = "" } = indicesOf(store.get()).find(({ symbol }) => symbol === index) ?? {};
   const written = useMemo(() => unitFor(about, own.map(({ value }) => value), own[0]?.unit ?? ""), [about, own]);
-  const plot = useMemo(() => declared(own, { of, baseline: result.baseline, isRelative, written,
-    units: result.units ?? {} }), [own, of, isRelative, written]);
+  const plot = useMemo(() => declared(about, own, { of, baseline: result.baseline, isRelative, written, title,
+    units: result.units ?? {} }), [own, of, isRelative, written, title]);
   const [picked, look] = useState(/** @type {number | null} */ (null));
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
     <${Plot} plot=${plot} table=${tableOf(own, of, written, result.units ?? {})} picked=${picked} look=${look}
@@ -66,11 +69,11 @@ export function SweepResult({ store, api, job }) {
 /** @param {number} value @param {Swept} of */
 const writtenOf = (value, { unit, written }) => quantity(value / (written?.factor ?? 1), written?.unit ?? unit);
 
-/** @param {Row[]} rows
- * @param {{of: Swept, baseline: string, isRelative: boolean, written: WrittenUnit,
+/** @param {any} about @param {Row[]} rows
+ * @param {{of: Swept, baseline: string, isRelative: boolean, written: WrittenUnit, title: string,
  * units: {[name: string]: string}}} how
  * @returns {Declaration & {points: Place[]}} */
-function declared(rows, { of, baseline, isRelative, written: { unit, factor }, units }) {
+function declared(about, rows, { of, baseline, isRelative, written: { unit, factor }, title, units }) {
   const layouts = [...new Set(rows.map(({ layout }) => layout))];
   const colours = coloursOf(layouts, baseline);
   const { index = "" } = rows[0] ?? {};
@@ -84,15 +87,14 @@ function declared(rows, { of, baseline, isRelative, written: { unit, factor }, u
     title: `${index} over ${of.words}`,
     x: { what: of.words, unit: of.written?.unit ?? of.unit, size: of.written?.factor, padded: true },
     y: isRelative ? { what: `reduction of ${index} relative to ${baseline}`, unit: "%", zero: true, padded: true }
-      : { what: index, unit, size: 1 / factor },
+      : { what: title ? indexAxis(index, title) : index, unit, size: 1 / factor },
     curves: layouts.map((layout, i) => ({ name: layout, colour: colours[layout], dash: layout === baseline,
       x: sorted[i].map((row) => row[of.name]), y: sorted[i].map((row) => numberOr(valueOf(row))) })),
     marks: isInside ? [{ x: Number(of.own), text: `study: ${writtenOf(Number(of.own), of)}` }] : [],
     points: sorted.flatMap((own, curve) => (isRelative && layouts[curve] === baseline ? [] : own.flatMap((row) => {
       const value = numberOr(valueOf(row));
       if (value === null) return [];
-      const values = Object.entries(row.parameters ?? {})
-        .map(([name, each]) => `${name} = ${shown(each, 4)} ${units[name] ?? ""}`.trim()).join(", ");
+      const values = valuesIn(about, mapValues(row.parameters ?? {}, (each, name) => `${each} ${units[name] ?? ""}`));
       const reduced = typeof row.improvement_percent === "number" && row.layout !== baseline
         ? `, ${shown(row.improvement_percent, 3)} % below ${baseline}` : "";
       const doubt = isOk(row.status) ? "" : `${row.status}: `;

@@ -11,7 +11,7 @@ import { Name } from "../parts/name.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
 import { shown, times, unitFor, withUnit } from "../state/scale.js";
-import { indexChoices, indicesOf, percent } from "./answers.js";
+import { indexAxis, indexChoices, indicesOf, percent } from "./answers.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -46,7 +46,8 @@ export function TolerancePanel({ store, api }) {
   </form>
   <${Unchosen} state=${state} designs=${[designOf(document)]} />
   ${value &&
-    html`<${Scattered} about=${state.about} value=${value} />
+    html`<${Scattered} about=${state.about} value=${value}
+      title=${indices.find(({ symbol }) => symbol === value.index)?.title ?? ""} />
     <p class="row"><button type="button" onClick=${save}>Save (CSV)</button></p>`}`;
 }
 
@@ -56,8 +57,8 @@ function spreadOf(names, form) {
   return Object.fromEntries(parts.filter(([, part]) => Number(part) > 0));
 }
 
-/** @param {{about: any, value: any}} props */
-function Scattered({ about, value }) {
+/** @param {{about: any, value: any, title: string}} props  `title`: of the index */
+function Scattered({ about, value, title }) {
   const rows = [
     ["nominal", value.nominal],
     ["mean", value.mean],
@@ -72,11 +73,12 @@ function Scattered({ about, value }) {
     <div class="scattered">
       <${Table} label="Distribution" data-scatter=${value.index}
         heads=${[`${withUnit(value.index, unit)}, ${value.method.replaceAll("-", " ")}`, "value"]}>
-        ${rows.map(([title, number]) => html`<tr key=${title}><th scope="row">${title}</th>
+        ${rows.map(([what, number]) => html`<tr key=${what}><th scope="row">${what}</th>
           <td class="number" data-value=${number}>${shown(times(number, factor))}</td></tr>`)}
       <//>
       ${value.histogram.counts.some((/** @type {number} */ count) => count > 0) && html`<${Plot} plot=${{
-        title: `Distribution of ${value.index}`, x: { what: value.index, unit: value.unit }, curves: [],
+        title: `Distribution of ${value.index}`, curves: [],
+        x: { what: indexAxis(value.index, title), unit: value.unit },
         y: { what: "number of samples", unit: "", zero: true }, bars: value.histogram,
         marks: [{ x: value.nominal, text: "nominal" }],
       }} />`}

@@ -2,7 +2,7 @@
 // whether it may vary; and the best values of what may.
 
 import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { isSearched, layoutsWith, numbersOf, selectedElement } from "../library.js";
+import { isSearched, layoutsWith, numbersOf, selectedElement, wrongIn } from "../library.js";
 import { judging, quickMethod } from "../methods.js";
 import { Moving } from "../parts/clock.js";
 import { formHandler, textHandler } from "../parts/controls.js";
@@ -335,7 +335,8 @@ export const problemsOf = (state) => answerOf(state, "check").value?.problems ??
 
 /** The problems of the study that no field of the page tells. @param {State} state */
 export function otherProblems(state) {
-  const fields = numbersOf(state).map(({ path }) => path);
+  const { layout } = state.history.present;
+  const fields = [...numbersOf(state).map(({ path }) => path), ...(wrongIn(state) ? [["layouts", layout]] : [])];
   return problemsOf(state).filter((problem) => !fields.some((place) => isAt(problem, place)));
 }
 

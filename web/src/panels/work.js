@@ -7,10 +7,10 @@ import { SearchForm, SearchResult, AddFreeNetwork, searchBody } from "./search.j
 import { SweepResult, sweepTitle } from "./sweep.js";
 import { Select, Table, formHandler, showNewest } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { placed, printed, quantity, rounded, scaled, takenApart, unitFor } from "../state/scale.js";
+import { placed, printed, quantity, scaled, takenApart, unitFor, valuesIn } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
-import { searchedLayouts } from "../library.js";
+import { isSearched, searchedLayouts } from "../library.js";
 import { answerOf } from "../questions.js";
 import { MarginsResult } from "./margins.js";
 import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js";
@@ -39,7 +39,7 @@ const KINDS = [
     lacks: (state) => (searchedLayouts(state).length > 0 ? null : "No layout has a free network."),
     Remedy: AddFreeNetwork,
     sentence: "Every network that a free network may be, ranked; of two or three indices the front over all networks. "
-      + "With several axles, constraints or other design variables each network takes up to a minute." },
+      + "The ranking fills while it goes on; a search that is stopped keeps it, and can be resumed." },
 ];
 
 /** @param {{store: Store, api: Api}} props */
@@ -64,8 +64,9 @@ const notByEnter = (event) =>
 function Begin({ store, api, kind }) {
   const [told, setTold] = useState("");
   const state = store.get();
-  const { study } = state.history.present;
+  const { study, layout } = state.history.present;
   const lacking = kind.lacks?.(state);
+  const isNext = kind.Remedy && state.view.tall && isSearched(state, layout); // what is to be done with a free network
   return html`<form class="begin" onKeyDown=${notByEnter} onSubmit=${formHandler(async (form) => {
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     const told = await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) });
@@ -77,7 +78,7 @@ function Begin({ store, api, kind }) {
     ${lacking ? html`<p class="row"><span class="quiet">${lacking}</span>
         ${kind.Remedy && html`<${kind.Remedy} store=${store} />`}</p>`
       : html`<div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}
-        <button class="edged">Begin</button></div>`}
+        <button class=${isNext ? "main" : "edged"}>Begin</button></div>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
   </form>`;
 }
@@ -123,7 +124,7 @@ function OptimumResult({ store, job: { result } }) {
       ${doubts.map((doubt) => html`<p key=${doubt}>${doubt}</p>`)}</div>`}
     ${others.map((sentence) => html`<p class="quiet" key=${sentence}>${sentence}</p>`)}
     ${designs.map((design) => html`<p key=${`${design.layout} ${design.index}`}>
-      ${Object.entries(design.texts).map(([name, text]) => `${name} = ${rounded(String(text))}`).join(", ")}
+      ${valuesIn(store.get().about, design.texts)}
       <${Take} store=${store} design=${design}>Take it into the editor<//></p>`)}`;
 }
 

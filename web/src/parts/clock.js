@@ -34,13 +34,13 @@ export function Moving({ what, since = null }) {
     && html` <progress aria-label=${what}></progress> <${Clock} since=${since ?? begun} />`}</span>`;
 }
 
-const WORDS = { current: "current", coming: "coming", none: "no answer" };
-const BEFORE = "coming; below are the numbers of before";
+const WORDS = { current: "current", coming: "coming", none: "no answer", lost: "no server" };
+const BEFORE = "; below are the numbers of before";
 
 /** Whether what stands below is the answer to what is asked now.
  * @param {{shown: import("../state/answers.js").Shown}} props */
-export function Being({ shown: { is, before } }) {
-  const what = useLate(before) ? BEFORE : WORDS.coming;
-  return html`<span class="being" data-being=${is}>
-    ${is === "coming" ? html`<${Moving} what=${what} />` : WORDS[is]}</span>`;
+export function Being({ shown: { is, before, lost } }) {
+  const coming = is === "coming";
+  const what = WORDS[coming && lost ? "lost" : is] + (useLate(before) ? BEFORE : "");
+  return html`<span class="being" data-being=${is}>${coming && !lost ? html`<${Moving} what=${what} />` : what}</span>`;
 }

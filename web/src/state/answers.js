@@ -9,7 +9,9 @@ import { takenApart } from "./scale.js";
  * since the study was last opened or undone.
  * @typedef {{kept: Kept[], underWay: string | null, recent: boolean}} Answers */
 /** What a panel shows. `before` says that the value belongs to other numbers of the same design, as long as its own is
- * coming. @typedef {{is: "current" | "coming" | "none", value: any, sentence: string | null, before: boolean}} Shown */
+ * coming; `lost` that no server is there to give it.
+ * @typedef {{is: "current" | "coming" | "none", value: any, sentence: string | null, before: boolean,
+ * lost?: boolean}} Shown */
 
 const MOST = 8; // answers of a panel that are kept, so that undoing finds them again
 

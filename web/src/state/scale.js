@@ -77,11 +77,11 @@ export function aligned(number, digits) {
   return text.replace(/^(−?\d+)(\.\d+)?/, (_, whole, part = ".") => `${whole}${part}${"0".repeat(missing)}`);
 }
 
-/** A quantity with few digits. @param {string} text */
-export function rounded(text) {
-  const apart = takenApart(text);
-  return apart ? `${shown(apart.number)} ${apart.unit}` : text;
-}
+/** Values of a design in few digits, in units that suit them; those `at` a bound have a star.
+ * @param {any} about @param {{[name: string]: unknown}} texts @param {object} [at] */
+export const valuesIn = (about, texts, at = {}) => Object.entries(texts).map(([name, text]) =>
+  `${name} = ${briefIn(about, String(text), takenApart(text)?.unit ?? "")}${name in at ? "*" : ""}`
+    .replaceAll(" ", "\u00a0")).join(", ");
 
 /** A number with so many places after the point, or before it where these are negative, as answers show it; five digits
  * where there is no number of places. @param {number | null | undefined} number

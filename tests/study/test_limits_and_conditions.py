@@ -239,6 +239,20 @@ def test_a_table_of_limits_says_how_its_values_are_computed(
     assert table.caption == f"Limits of the designs that are best for ride comfort{mean} (J1){words}"
 
 
+@pytest.mark.parametrize(
+    ("active", "value", "text"),
+    [(True, 1e3 * (1.0 - 3e-7), "1 kN"), (True, 1000.2, "1 kN"), (False, 999.7, "999.7 N"), (False, 902.0, "902.0 N")],
+)
+def test_an_active_limit_has_the_text_of_its_bound(
+    load: Callable[..., Study], active: bool, value: float, text: str
+) -> None:
+    study = load('indices = ["J1"]\noptimise = "norm"\nsubject_to = { J3 = { at_most = "1 kN" } }', elements=FREE)
+    results = dataset(study, {})
+    results["limit_value"][:], results["limit_active"][:], results["limit_unit"][:] = value + 3e-5, active, "N"
+    (table,) = limit_tables(results)
+    assert {row.cells[2].text for row in table.rows} == {text}
+
+
 @pytest.mark.parametrize("part", [BudgetPart("S3", "J1", "f"), TolerancePart("S3", "J1")])
 def test_a_design_that_breaks_a_limit_is_not_analysed(
     load: Callable[..., Study], part: BudgetPart | TolerancePart

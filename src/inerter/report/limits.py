@@ -18,8 +18,8 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
 )
-from inerter.formatting import format_list, format_share
-from inerter.table import Column, Content, Quantity, Row, Table, cells
+from inerter.formatting import format_list, format_quantity, format_share
+from inerter.table import Column, Content, Quantity, Row, Shown, Table, cells
 
 _MOST_RANGES = 3  # of swept values, in a remark
 
@@ -61,11 +61,13 @@ def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = Non
 def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
     """Value of a limited quantity, and the sensitivity to an active limit."""
     value, cost, part = float(entry["limit_value"]), float(entry["limit_cost"]), str(entry["limit.part"].item())
-    quantity = Quantity(value, str(entry["limit_unit"].item()))
+    unit, active = str(entry["limit_unit"].item()), bool(entry["limit_active"])
+    # a search ends so near an active limit that only zeros would tell the value from it
+    quantity = Shown(value, format_quantity(value, unit)) if active else Quantity(value, unit)
     content = f"{quantity} ({part})" if part else quantity
     if bool(infeasible(entry)):
         return content, "the nearest design"
-    if not bool(entry["limit_active"]):
+    if not active:
         return content, "not reached"
     if np.isnan(cost):
         return content, "at its limit"

@@ -128,7 +128,11 @@ def test_the_unit_tells_the_element(text, unit, value):
         ("", ("begin with a number",)),
         ("stiff", ("begin with a number",)),
         ("1,5 N/m", ("comma", "point")),
-        ("1_000 N/m", ("unknown unit",)),
+        ("1_000 N/m", ("separators", '"1000 N/m"')),
+        ("1 250 000 N/m", ("separators", '"1250000 N/m"')),
+        ("60'000.5 N/m", ("separators", '"60000.5 N/m"')),
+        ("60\u202f000", ("separators",)),
+        ("60 000 stiff", ("separators",)),
         ("nan N/m", ("not a finite number",)),
         ("-inf N/m", ("not a finite number",)),
         ("Infinity N/m", ("not a finite number",)),
@@ -169,6 +173,10 @@ def test_what_is_not_a_stiffness_is_refused_in_one_sentence(text, words):
         ("1222 kg m2", "kg m^2", "1222 kg m^2"),
         ("2 g/cm3", "kg/m^3", "2 g/cm^3"),
         ("90 kmh", "m/s", "90 km/h"),
+        ("90 Km/H", "m/s", "90 km/h"),
+        ("250 KG", "kg", "250 kg"),
+        ("10 KN/m", "N/m", "10 kN/m"),
+        ("3 HZ", "Hz", "3 Hz"),
     ],
 )
 def test_a_usual_spelling_that_is_no_unit_is_proposed_as_one_and_with_its_prefix(

@@ -33,6 +33,9 @@ _SPELLINGS = (  # that are often seen, and their replacements
     (re.compile(r"(?<=[a-z])(?=[234]\b)"), "^"),
     (re.compile(r"\b(?:kmh|kmph)\b"), "km/h"),
 )
+_LETTERS = re.compile(r"[A-Za-z]+")
+_CASES = {name.lower(): name for name in ("kg", "kN", "N", "km", "mm", "m", "s", "h", "Hz", "kmh")}  # of usual units
+_THOUSANDS = re.compile(r"(?<=\d)[\s'’_](?=\d{3}(?!\d))")
 PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
@@ -182,6 +185,10 @@ def _split(text: object, expected: str, units: Sequence[str] = (), example: str 
     given = text[number.end() :].strip()
     if given.startswith(","):
         _fail(text, "a comma in a number, where the decimal mark is a point", expected, example)
+    if (joined := _THOUSANDS.sub("", text)) != text:
+        left = _NUMBER.sub("", joined, count=1).strip()
+        right = joined.strip() if left and is_unit(left) else example
+        _fail(text, "separators in a number, which is written without", expected, right)
     if not given:
         _fail(text, "unit missing", expected, example)
     if not is_unit(given):
@@ -215,8 +222,8 @@ def _as_force(given: str, units: Iterable[str]) -> str:
 
 
 def _respell(given: str) -> str:
-    """Unit that is meant by a usual spelling that is none ("kNs/m", "kg m2", "kmh"); else empty."""
-    unit = given
+    """Unit that is meant by a usual spelling that is none ("kNs/m", "kg m2", "kmh", "KG"); else empty."""
+    unit = _LETTERS.sub(lambda name: _CASES.get(name[0].lower(), name[0]), given)
     for pattern, replacement in _SPELLINGS:
         unit = pattern.sub(replacement, unit)
     return unit if unit != given and is_unit(unit) else ""

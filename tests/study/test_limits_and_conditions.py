@@ -383,6 +383,24 @@ BAD = {
         "study.subject_to.tire-load",
         ['Did you mean "tyre-load"?'],
     ),
+    "limit by a part of its name": (
+        LIMIT + '{ travel = { at_most = "8 mm" } }',
+        "",
+        "study.subject_to.travel",
+        ['Did you mean "suspension-travel"?'],
+    ),
+    "limit by another word": (
+        LIMIT + '{ J3 = { max = "1 N" } }',
+        "",
+        "study.subject_to.J3.max",
+        ['Did you mean "at_most"?'],
+    ),
+    "limit that is no table": (
+        LIMIT + '{ J3 = "500 N" }',
+        "",
+        "study.subject_to.J3",
+        ["expected a table such as { at_most"],
+    ),
     "limit of no strut": (
         LIMIT + '{ static-stiffness.front = { equal = "1 N/m" } }',
         "",

@@ -8,6 +8,10 @@ from difflib import get_close_matches
 from inerter.units import quote_value
 
 _MOST = 12  # names in a message
+_SYNONYMS = {  # of keys, in other programs
+    **dict.fromkeys(("min", "minimum", "lower", "low"), ("from", "at_least", "lowest")),
+    **dict.fromkeys(("max", "maximum", "upper", "high"), ("to", "at_most", "highest")),
+}
 
 
 def nearest(word: object, known: Iterable[str]) -> str:
@@ -21,14 +25,19 @@ def nearest(word: object, known: Iterable[str]) -> str:
 
 
 def closest(word: object, known: Iterable[str]) -> str | None:
-    """The known word that an unknown one is a misspelling of; None if no known word is near.
+    """The known word that an unknown one is a misspelling, a synonym or a part of; None if no known word is near.
 
     >>> closest("half_car", ("quarter-car", "half-car"))
     'half-car'
+    >>> closest("max", ("at_most", "at_least")), closest("travel", ("tyre-load", "suspension-travel"))
+    ('at_most', 'suspension-travel')
     """
-    candidates = {name.lower(): name for name in known}
-    close = get_close_matches(word.lower(), candidates, n=1) if isinstance(word, str) else []
-    return candidates[close[0]] if close else None
+    if not isinstance(word, str):
+        return None
+    candidates, given = {name.lower(): name for name in known}, word.lower()
+    close = get_close_matches(given, candidates, n=1) or [one for one in _SYNONYMS.get(given, ()) if one in candidates]
+    whole = [one for one in candidates if given in one.split("-")]
+    return candidates[close[0]] if close else candidates[whole[0]] if len(whole) == 1 else None
 
 
 def some(names: Iterable[str]) -> str:

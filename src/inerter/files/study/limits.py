@@ -107,7 +107,7 @@ class LimitsCodec(ByPlaceCodec):
     """The limits of a study: tables by the names of indices and static stiffnesses."""
 
     item: Codec = _SIDES
-    example: str = 'such as { at_most = "600 N" }'
+    example: str = 'a table such as { at_most = "600 N" }'
     entries: bool = True
 
     def dump(self, value: Iterable[StudyLimit]) -> dict[str, dict[str, str | float]]:

@@ -160,6 +160,20 @@ def member_under_a_sine(number: int) -> Member:
     return replace(member, index=it.LoadCarrying(amplitude=logarithmic(rng, 30.0, 3e3)))
 
 
+def member_with_a_damped_stop(number: int) -> Member:
+    """A quarter car that meets a stop with a damper, whose force jumps at contact."""
+    rng = np.random.default_rng([53, number])
+    mass, tyre, k = logarithmic(rng, 150, 600), logarithmic(rng, 1e5, 3e5), logarithmic(rng, 1e4, 6e4)
+    critical = 2.0 * float(np.sqrt(k * mass))
+    behind = it.Spring(k * logarithmic(rng, 0.3, 10)) | it.Damper(critical * logarithmic(rng, 0.02, 1.0))
+    strut = it.Spring(k) | it.Damper(critical * logarithmic(rng, 0.05, 0.3))
+    stop = it.Gap(logarithmic(rng, 5e-4, 5e-3)) - behind
+    on = it.Road(logarithmic(rng, 2e-7, 5e-6), float(rng.uniform(10.0, 40.0)))
+    index: Index = it.RideComfort(on, weighting=(None, "Wk")[number % 2])
+    car = it.QuarterCar(mass, logarithmic(rng, 20, 60), tyre, strut | stop)
+    return Member(f"damped stop, {index.symbol}", car, index)
+
+
 def _rubbing(rng: np.random.Generator, mass: float, stiffness: float) -> Network:
     k = stiffness * logarithmic(rng, 0.08, 0.8)
     critical = 2.0 * float(np.sqrt(k * mass))

@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from bounded import (
     SEEN,
@@ -13,6 +15,7 @@ from bounded import (
     intervals,
     linear_member,
     member_under_a_sine,
+    member_with_a_damped_stop,
     member_with_friction,
     of_finer_steps,
     of_hardly_any_friction,
@@ -42,6 +45,13 @@ def test_norms_are_within_their_bound_of_rational_arithmetic(number):
 @pytest.mark.parametrize("number", sampled(range(60), [21], often=[19], kept=2))
 def test_where_friction_turns_between_samples_the_bound_knows(number):
     check(of_finer_steps(member_with_friction(number), ROADS))
+
+
+@pytest.mark.parametrize("number", sampled(range(60), [2], kept=5))
+def test_where_a_stop_is_met_between_samples_the_bound_knows(number):
+    """The force of its damper jumps, and with it the acceleration."""
+    for method in (replace(ROADS, period=10), GAINS):
+        check(of_finer_steps(member_with_a_damped_stop(number), method))
 
 
 @pytest.mark.parametrize("number", sampled(range(24), seldom=range(3, 24), kept=2))

@@ -366,7 +366,8 @@ def _average_index(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBand
 
 def _errors(missing: OutOfBandContribution, found: Sequence[RoadRun], outputs: int) -> list[ErrorSource]:
     """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
-    jumps = mean_bound([ran.jumps[:outputs] for ran in found])
+    kept = [ran for ran in found if np.all(np.isfinite(ran.lines))] or found  # whose contacts are known, if any is
+    jumps = mean_bound([ran.jumps[:outputs] for ran in kept]) * float(np.sqrt(len(kept) / len(found)))
     return [
         ErrorSource("time step", _STEPPED + jumps),
         steady_state_error([ran.steady for ran in found], _PEAKS),

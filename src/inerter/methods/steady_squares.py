@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from inerter.errors import ErrorSource, Status
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.observe import outputs_at_rest, trajectory_of
+from inerter.simulation.observe import contact_jumps, outputs_at_rest, trajectory_of
 from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, settle
 from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
@@ -101,10 +101,9 @@ def _nan_squares(count: int, status: Status, steady: PeriodicState) -> Squares:
 
 
 def jump_sizes(integration: Integration, outputs: Sequence[str]) -> Array:
-    """Largest jump of each output (elements, outputs) at an event of each nonlinear element.
+    """Largest jump of each output (elements, outputs) at an event of each friction; zero of gaps.
 
-    That is what a friction adds to it one way less what it adds the other way, while all others are as they are. Forces
-    of gaps do not jump but by their dampers, which is left out.
+    That is what a friction adds to it one way less what it adds the other way, while all others are as they are.
     """
     system, count = integration.system, integration.count
     maps, states = integration.modes.maps[:count], integration.modes.state[:count]
@@ -139,7 +138,8 @@ def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
 
     A jump of J anywhere between two samples h apart moves the sum of squares by 2 y J h u with u between -1/2 and 1/2,
     independently of all others: N of them in a period T change a r.m.s. value by (h / T) sqrt(N / 12) J, as one
-    standard deviation. With a filter y is what has passed through it twice. What begins to slip does not jump.
+    standard deviation. With a filter y is what has passed through it twice. What begins to slip does not jump. The
+    force of a gap that closes jumps by its dampers; these jumps are known where the motion was kept.
     """
     met = "jumps", tuple(outputs), integration.modes.state[: integration.count].tobytes()
     if met not in integration.known:
@@ -147,7 +147,11 @@ def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
     events = integration.record.events[: integration.events]
     ends = np.bincount(events["element"][events["before"] != 0], minlength=len(integration.system.nonlinear))
     steps = max(integration.table.samples - 1, 1)
-    return np.asarray(np.sqrt(ends @ integration.known[met] ** 2 / 12.0) / steps)
+    squares = ends @ integration.known[met] ** 2
+    if integration.record.states.shape[0] > 1:
+        wanted = (integration.system.outputs[name] for name in outputs)
+        squares = squares + np.array([np.sum(contact_jumps(integration, output) ** 2) for output in wanted])
+    return np.asarray(np.sqrt(squares / 12.0) / steps)
 
 
 def mean_bound(shares: Sequence[Array]) -> float:

@@ -97,7 +97,41 @@ def _event_list(system: PiecewiseSystem, events: NDArray[Any]) -> tuple[Event, .
 
 def _evaluate(integration: Integration, reached: int, wanted: Output) -> Matrix:
     """An output at the samples that were reached."""
-    system, table, record = integration.system, integration.table, integration.record
+    over, inputs = _rows_of(integration, wanted)
+    at = slice(reached)
+    return _at_samples(integration, over, inputs[at], integration.record.visited[at], at)
+
+
+def contact_jumps(integration: Integration, wanted: Output) -> Matrix:
+    """Jumps of an output between samples at which different gaps are in contact.
+
+    Both contact states are applied to the second of the two samples, which must have been kept.
+    """
+    system, record = integration.system, integration.record
+    loose = [e for e, element in enumerate(system.nonlinear_elements) if not element.is_damped]
+    contacts = integration.modes.state[record.visited[: record.states.shape[0]]][:, loose]
+    after = 1 + np.flatnonzero(np.any(contacts[1:] != contacts[:-1], axis=1))
+    if not after.size:
+        return np.zeros(0)
+    over, inputs = _rows_of(integration, wanted)
+    there, here = (
+        _at_samples(integration, over, inputs[after], record.visited[at], after) for at in (after, after - 1)
+    )
+    return there - here
+
+
+def _at_samples(
+    integration: Integration, over: Matrix, inputs: Matrix, modes: NDArray[np.int64], at: slice | NDArray[np.int64]
+) -> Matrix:
+    """Rows `over` of these modes applied to the states kept `at` some samples, and to the inputs there."""
+    out = np.empty(inputs.shape[0])
+    evaluate(over, np.ascontiguousarray(modes), np.ascontiguousarray(integration.record.states[at]), inputs, out)
+    return out
+
+
+def _rows_of(integration: Integration, wanted: Output) -> tuple[Matrix, Matrix]:
+    """Rows of an output in each mode, on the state, on inputs that move and on one; and these inputs at all samples."""
+    system, table = integration.system, integration.table
     on_x, on_u, on_eta = output_rows(system, wanted)
     n, nu, roads = on_x.size, on_u.size, len(system.mechanism.roads)
     maps = integration.modes.maps[: integration.count]
@@ -107,15 +141,13 @@ def _evaluate(integration: Integration, reached: int, wanted: Output) -> Matrix:
     over = np.einsum("i,mij->mj", weights, rows) + direct
     terms = np.einsum("i,mij->mj", np.abs(weights), np.abs(rows)) + np.abs(direct)
     over[np.abs(over) < _ROUNDING * terms] = 0.0  # what sticks does not move
-    out = np.empty(reached)
     channel = [*range(roads)] * 3 + [*range(roads, nu - 2 * roads)]
     used = [i for i in range(nu) if np.any(over[:, n + i]) and table.moving[channel[i]]]
     over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, [n + i for i in used]], over[:, -1:]], axis=1))
-    inputs = np.empty((reached, len(used)))
+    inputs = np.empty((table.samples, len(used)))
     for column, i in enumerate(used):
-        inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i])[:reached]
-    evaluate(over, record.visited[:reached], np.ascontiguousarray(record.states[:reached]), inputs, out)
-    return out
+        inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i])
+    return over, inputs
 
 
 def sampled_input(table: InputTable, derivative: int, channel: int) -> Matrix:

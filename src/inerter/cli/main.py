@@ -122,6 +122,32 @@ def search(
 
 @app.command(
     help_epilogue="""Examples:
+  inerter compare before after
+  inerter compare before after --json
+
+Exit codes: 0 all values agree within their errors, 1 some differ, 2 the
+folders cannot be compared."""
+)
+def compare(first: Path, second: Path, /, *, json: Json = False) -> tuple[Statement, ...]:
+    """Compare two folders of results of inerter run: what was asked, and which values differ beyond their errors.
+
+    Values are compared by layout, index, method and swept values. They agree if
+    they differ by no more than their error bounds and 95 % confidence intervals.
+
+    Parameters
+    ----------
+    first
+        A folder of results.
+    second
+        Another one; changes are relative to the first.
+    """
+    from inerter.cli.compare import compare as command
+
+    return command(first, second, as_json=json)
+
+
+@app.command(
+    help_epilogue="""Examples:
   inerter check examples/half-car.toml
   inerter check examples/stick_slip.toml
   inerter check studies/*.toml"""

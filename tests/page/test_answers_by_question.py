@@ -142,7 +142,7 @@ def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visit
         waiting[0].continue_()
     page.evaluate(FRAMES)
     page.wait_for_timeout(500)
-    page.wait_for_selector("#verdict[data-severity=none]")
+    page.wait_for_selector("#verdict[data-severity=open]")
     assert "chosen yet" in page.inner_text("#verdict > b")
     assert page.inner_text(".optimise [role=status]") == ""
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
@@ -350,7 +350,7 @@ def test_a_design_that_nobody_has_chosen_has_no_per_cent(visitor: Visitor) -> No
     page.get_by_role("group", name="Layouts").get_by_role("button", name="S3", exact=True).click()
     visitor.settled()
     assert page.inner_text(".notice").startswith("train.toml is open.")
-    page.wait_for_selector("#verdict[data-severity=none]")
+    page.wait_for_selector("#verdict[data-severity=open]")
     said = page.inner_text("#verdict > b")
     assert "chosen yet" in said
     assert "find the best" in said

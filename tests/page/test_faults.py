@@ -384,7 +384,7 @@ def test_a_train_keeps_its_warning_and_a_half_car_its_per_cent_until_chosen(visi
         visitor.drawn()
         assert "in the middle of their" in page.inner_text("#tab-panel .unchosen")
         assert "chosen yet" in page.inner_text("#verdict")
-        assert page.get_attribute("#verdict", "data-severity") == "wait"  # nothing is wrong
+        assert page.get_attribute("#verdict", "data-severity") == "open"  # nothing is wrong
     assert "%" not in page.inner_text(".answers table")
     with page.expect_request("**/api/panel/optimise"):
         visitor.open(EXAMPLES / "half-car.toml")

@@ -102,7 +102,7 @@ function Verdict({ state, blank }) {
   const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : unsearched ? none : "";
   const isStale = !failed && verdict?.severity === "answer" && staleLayouts(state).length > 0;
   const isOpen = failed === none || (!failed && verdict?.severity === "none" && unchosenLayouts(state).length > 0);
-  const kind = is === "coming" || isOpen ? "wait" : failed ? "none" : isStale ? "doubt"
+  const kind = is === "coming" ? "wait" : isOpen ? "open" : failed ? "none" : isStale ? "doubt"
     : (verdict?.severity ?? "answer");
   const again = is === "coming" ? `${lost ? "Not computed" : "Computing again"}. Before: ` : "";
   const told = failed || (verdict ? `${again}${isStale ? "At values not re-optimised: " : ""}${verdict.sentence}`

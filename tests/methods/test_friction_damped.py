@@ -112,6 +112,24 @@ def test_a_stop_that_is_never_reached_damps_nothing(method: it.Method) -> None:
     assert found.status.kind is StatusKind.INACCURATE
 
 
+@pytest.mark.parametrize(
+    ("spring", "damping", "behind", "highest"),
+    [(24e3, 1000.0, (4e4, 3500.0), 20.0), (35e3, 902.0, (222e3, 3464.0), 500.0)],
+)
+def test_a_stop_that_is_never_reached_counts_above_the_excited_band_alone(spring, damping, behind, highest) -> None:
+    """The linear model with closed gaps is another design: 5 and 1 % higher, if it tells more than the error bound."""
+    strut = it.Spring(spring) | it.Damper(damping)
+    stop = it.Gap(1.0) - (it.Spring(behind[0]) | it.Damper(behind[1]))
+    index = it.RideComfort(it.Road(5e-7, 20.0))
+    alone, stopped = (it.QuarterCar(259.0, 33.9, 117e3, one) for one in (strut, strut | stop))
+    value = it.evaluate(alone, index, it.Norm()).value
+    found = it.evaluate(stopped, index, it.ApproximateLinear(it.MultisineExcitation(highest=highest), realisations=2))
+    assert abs(found.value - value) < found.error_bound * value
+    assert (
+        {source.name: source.bound for source in found.error_sources}["band above the highest frequency"] > 0.01
+    ) == (highest < 100.0)
+
+
 @pytest.mark.campaign
 def test_with_backlash_the_bound_of_few_lines_holds_their_bias() -> None:
     car, index = loosely_stopped()

@@ -52,6 +52,7 @@ _STEPPED = 1e-4  # relative error of gains by the cubics between four points of 
 _UNSETTLED = 20.0  # times the change of the state over a period that gains may be off by
 _LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
 _UNLIKE = "no equivalent linear model: the gains are used alone, up to the highest excited frequency"
+_LOOSE = "the gains are used alone; above the highest excited frequency gaps count as closed"
 _HELD = "the noise is held: the gains at the instants of its samples are used alone"
 _MOST = 1000  # realisations
 
@@ -68,9 +69,9 @@ class ApproximateLinear(FormerMethodNames):
     linear design that moves alike (frictions as dampers of the r.m.s. velocities found, gaps closed), which are known,
     only the difference is estimated: an r.m.s. value is the root of norm^2 + sum of (gain^2 - linear gain^2), and for a
     peak gain the difference alone is smoothed over neighbouring frequencies, by a Hann window that reaches `smoothing`
-    [Hz] to both sides. Where play moves as no linear design does, gains stand alone, as a note says, and what lies
-    between the harmonics is bounded by what a period leaves of a motion. Where the period is too short for the slowest
-    motion, there is no value. A linear design gets its norm.
+    [Hz] to both sides. Play moves as no linear design does: r.m.s. values then are the gains alone, as a note says, and
+    the linear design adds the band above the highest frequency only. Where the period is too short for the slowest
+    motion, there is no value, or with play a bound by what a period leaves of a motion. A linear design gets its norm.
 
     With "paper2008" the input is the paper's noise, held for 1 ms and repeated after 100 s, and gains are the raw
     ratios |Y/U| at the instants of the samples, without the linear model; J3 of a half car is divided by s + 2 pi
@@ -263,10 +264,13 @@ class ApproximateLinear(FormerMethodNames):
         unseen, loose = model.unseen(gains.mean(axis=0), drive.omega), has_play(runs.system)
         if loose:  # the model closes gaps, which may damp what is not damped while they are open
             unseen = max(unseen, left)
-        if unseen <= _LOST:
+        if unseen <= _LOST and (definition.is_peak or not loose):
             return self._combine(definition, model, gains, drive, unseen), model.peaked
         if loose:
-            return replace(self._combine(definition, None, gains, drive, left), notes=(_UNLIKE,)), 0.0
+            share, above = (0.0, 0.0) if definition.is_peak else model.above(gains.mean(axis=0), drive.omega)
+            alone = self._combine(definition, None, gains, drive, left, above)
+            sources = (*alone.error_sources, ErrorSource("band above the highest frequency", 0.5 * share))
+            return replace(alone, notes=(_LOOSE,), error_sources=sources), 0.0
         at, decay = format_quantity(abs(model.pole.imag), "rad/s", 3), format_quantity(-model.pole.real, "1/s", 2)
         period = format_quantity(drive.excitation.period, "s", 6)
         message = f"a period of {period} is too short for the motion at {at}, which decays by {decay}; use a longer one"
@@ -286,8 +290,12 @@ class ApproximateLinear(FormerMethodNames):
         gains: Array,
         drive: ExcitedInputs,
         unseen: float = 0.0,
+        above: Array | float = 0.0,
     ) -> Estimate:
-        """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`."""
+        """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`.
+
+        Without a model, squares `above` the harmonics (outputs,) are added.
+        """
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
         weights = definition.drive.amplitude_density * np.array([abs(output.weight) for output in definition.outputs])
@@ -303,7 +311,7 @@ class ApproximateLinear(FormerMethodNames):
             peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in found)
         else:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
-            squares = sums.mean(axis=0) + (0.0 if known is None else known.norms**2)
+            squares = sums.mean(axis=0) + (above if known is None else known.norms**2)
             sizes = np.sqrt(np.maximum(squares, 0.0))
             value, peaks = float(definition.combine(sizes, weights)), ()
             scatter = (sums - sums.mean(axis=0)) @ (0.5 * definition.slopes(sizes, weights) / np.maximum(sizes, 1e-300))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import trapezoid
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.formatting import format_number
@@ -32,6 +33,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 Array = NDArray[np.float64]
 _UNSEEN = 5e-4  # of a mean square that harmonics may miss without a doubt
 _REPEATS = 1e-4  # change of the state over a period, relative to its size, that leaves an estimate alone
+_DECADES, _ABOVE = 4.0, 4001  # above the highest harmonic, and frequencies there
 _COMPARED = 2  # realisations that are simulated at twice their size
 
 
@@ -61,6 +63,17 @@ class LinearModel:
         total = np.maximum(gains.sum(axis=1), 1e-300)
         misfit = float(np.max(np.abs(self.squares(omega).sum(axis=1) / total - 1.0)))
         return float(self.missed * min(misfit + self.unlike, 1.0))
+
+    def above(self, gains: Array, omega: Array) -> tuple[float, Array]:
+        """Mean square above the harmonics, by this model, over that of the squared `gains` (outputs, harmonics).
+
+        Also the squares there (outputs,), in the units of squared norms.
+        """
+        beyond = (omega[-1] + 0.5 * omega[0]) * np.logspace(0.0, _DECADES, _ABOVE)
+        density = self.squares(beyond) * beyond
+        squares = (trapezoid(density, np.log(beyond), axis=1) + density[:, -1]) / np.pi  # at the end as 1 / omega^2
+        inside = omega[0] / np.pi * gains.sum(axis=1)
+        return float(np.max(squares / np.maximum(inside, 1e-300))), np.asarray(squares)
 
 
 def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) -> LinearModel:

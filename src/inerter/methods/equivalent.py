@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -145,27 +145,23 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     taken = {element.label for element in mechanism.elements()}
     found: dict[str, tuple[str, Element]] = {}
 
-    def replace_frictions(mount: str, network: Network) -> Network:
+    def replace_frictions(mount: Strut | Tyre) -> Network:
         def to_damper(element: Element) -> Network:
             if not element.is_damped:
                 return element
             name = f"equivalent_damper_{len(found) + 1}"
             while name in taken:
                 name += "_"
-            found[name] = (f"{element.key} {element.label!r} in {mount!r}", element)
+            found[name] = (f"{element.key} {element.label!r} in {mount.name!r}", element)
             if name in without:
                 return Friction(0.0, element.label)
             if name in locked:
                 return Gap(0.0, name)
             return Damper(Free(1e-3 * scale, 1e3 * scale, name), name)
 
-        return map_elements(network, to_damper)
+        return map_elements(mount.network, to_damper)
 
-    other = replace(
-        mechanism,
-        struts=tuple(replace(s, network=replace_frictions(s.name, s.network)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=replace_frictions(t.name, t.network)) for t in mechanism.tyres),
-    )
+    other = mechanism.with_networks(replace_frictions)
     moving = {branch.label for branch in linear_graph(other).branches}
     names = tuple(name for name in found if name in moving)
     frictions = [found[name][1] for name in names]

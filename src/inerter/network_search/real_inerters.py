@@ -11,10 +11,9 @@ from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.elements import Damper, Element, Friction, Inerter, Network, Spring
-from inerter.networks.transform import map_elements
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.validation import is_number
-from inerter.vehicle.replace_values import with_networks
+from inerter.vehicle.replace_values import with_elements
 from inerter.vehicle.vehicle import Vehicle
 
 
@@ -86,7 +85,7 @@ def _with_real_inerters(vehicle: Vehicle, found: FoundNetwork, real: RealInerter
         own = isinstance(element, Inerter) and element.label in names
         return real.network(element, friction) if own else element  # type: ignore[arg-type]
 
-    return with_networks(vehicle, lambda network: map_elements(network, change))
+    return with_elements(vehicle, change)
 
 
 def optimise_with_real_inerters(

@@ -122,11 +122,7 @@ def switching(mechanism: Mechanism) -> Mechanism:
     """
     if all(element.as_piecewise() is element for element in mechanism.elements()):
         return mechanism
-    return replace(
-        mechanism,
-        struts=tuple(replace(s, network=expand_elements(s.network, to_simulation)) for s in mechanism.struts),
-        tyres=tuple(replace(t, network=expand_elements(t.network, to_simulation)) for t in mechanism.tyres),
-    )
+    return mechanism.with_networks(lambda mount: expand_elements(mount.network, to_simulation))
 
 
 def switching_parts(element: Element) -> Iterator[Element]:

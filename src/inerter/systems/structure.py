@@ -49,14 +49,8 @@ class Structure:
         Labels are those of the mechanism itself.
         """
         numbers = iter(range(len(self.values)))
-        networks = {
-            mount.name: map_elements(mount.network, lambda element: _with_number(element, next(numbers)))
-            for mount in self.mechanism.mounts()
-        }
-        mechanism = replace(
-            self.mechanism,
-            struts=tuple(replace(s, network=networks[s.name]) for s in self.mechanism.struts),
-            tyres=tuple(replace(t, network=networks[t.name]) for t in self.mechanism.tyres),
+        mechanism = self.mechanism.with_networks(
+            lambda mount: map_elements(mount.network, lambda element: _with_number(element, next(numbers)))
         )
         if not mechanism.ground_moves:
             masses = {

@@ -23,12 +23,11 @@ from inerter.methods.registry import brief_words_of, is_blind, methods_that, ref
 from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Series, Spring
 from inerter.networks.elements.algebra import CombinedNetwork
-from inerter.networks.transform import map_elements
 from inerter.statements import Severity
 from inerter.tasks.budgets import element_break_even, range_text
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.validation import number_or_none
-from inerter.vehicle.replace_values import with_networks
+from inerter.vehicle.replace_values import with_elements
 from inerter.vehicle.vehicle import Vehicle
 
 USUAL: Mapping[type[Element], float] = {Damper: 0.2}  # relative tolerances where a study gives none, by kind of element
@@ -213,7 +212,7 @@ def _hypothetical(
     def change(part: Element) -> Network:
         return join(part, new) if isinstance(part, Inerter) and part.label in own else part
 
-    design = with_networks(asked.design, lambda network: map_elements(network, change))
+    design = with_elements(asked.design, change)
     return _Trial(name, f"{what} of {of}", what, design, is_present=False)
 
 

@@ -7,7 +7,7 @@ its upper end minus that of its lower end; its force is positive in tension.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from inerter.deprecation import RenamedAttribute, renamed_keywords
@@ -286,10 +286,14 @@ class Mechanism:
         Raises `DesignError` for a name that is not a free value here.
         """
         check_known(values, self.free_values())
+        return self.with_masses(values).with_networks(lambda mount: with_values(mount.network, values))
+
+    def with_networks(self, change: Callable[[Strut | Tyre], Network]) -> Mechanism:
+        """The same mechanism with the network `change(mount)` in each strut and tyre."""
         return replace(
-            self.with_masses(values),
-            struts=tuple(replace(s, network=with_values(s.network, values)) for s in self.struts),
-            tyres=tuple(replace(t, network=with_values(t.network, values)) for t in self.tyres),
+            self,
+            struts=tuple(replace(strut, network=change(strut)) for strut in self.struts),
+            tyres=tuple(replace(tyre, network=change(tyre)) for tyre in self.tyres),
         )
 
     def with_masses(self, values: Mapping[str, float]) -> Mechanism:

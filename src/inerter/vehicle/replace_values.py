@@ -139,8 +139,8 @@ def elements_by_label(vehicle: Vehicle, label: str) -> list[Element]:
     return chosen
 
 
-def with_elements(vehicle: Vehicle, change: Callable[[Element], Element]) -> Vehicle:
-    """The same vehicle with changed elements in its mounted networks."""
+def with_elements(vehicle: Vehicle, change: Callable[[Element], Network]) -> Vehicle:
+    """The same vehicle with `change(element)` in place of each element of its mounted networks."""
     return with_networks(vehicle, lambda network: map_elements(network, change))
 
 
@@ -151,9 +151,4 @@ def with_networks(vehicle: Vehicle, change: Callable[[Network], Network]) -> Veh
     if isinstance(vehicle, VehicleModel):
         mounted: dict[str, Any] = {name: change(network) for name, network in vehicle.networks().items()}
         return dataclasses.replace(vehicle, **mounted)
-    mechanism = vehicle.mechanism()
-    return dataclasses.replace(
-        mechanism,
-        struts=tuple(dataclasses.replace(s, network=change(s.network)) for s in mechanism.struts),
-        tyres=tuple(dataclasses.replace(t, network=change(t.network)) for t in mechanism.tyres),
-    )
+    return vehicle.mechanism().with_networks(lambda mount: change(mount.network))

@@ -202,9 +202,7 @@ def _with_widths(mechanism: Mechanism) -> Mechanism:
         is_closed = element.switches_by(GuardRole.ELONGATION) and not element.acts
         return element.with_value(1.0) if is_closed else element
 
-    struts = tuple(replace(s, network=map_elements(s.network, widen)) for s in mechanism.struts)
-    tyres = tuple(replace(t, network=map_elements(t.network, widen)) for t in mechanism.tyres)
-    return replace(mechanism, struts=struts, tyres=tyres)
+    return mechanism.with_networks(lambda mount: map_elements(mount.network, widen))
 
 
 def _limit(cut: Cut) -> FmuParameter:

@@ -15,6 +15,7 @@ from inerter.app.histories import history
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
 from inerter.app.wire import encode_json
+from inerter.decision.of_study import decisive_method
 from inerter.errors import DesignError, StudyError
 from inerter.field_metadata import fields_of
 from inerter.files.common.roads import ROAD_QUANTITIES
@@ -30,7 +31,7 @@ from inerter.networks.elements.algebra import CombinedNetwork, Network
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
-from inerter.tasks.budgets import budget_method, element_break_even
+from inerter.tasks.budgets import element_break_even
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.registry import VEHICLES
@@ -219,7 +220,7 @@ def break_even(study: Study, body: Body) -> Answer:
     baseline = baseline_of(study, body, [])
     if baseline is None:
         raise DesignError("A break-even value needs a baseline: a second layout, or `baseline` in the request.")
-    method = body.get("method") or budget_method(study)
+    method = body.get("method") or decisive_method(study.evaluate)
     index, element = required_value(body, "index"), required_value(body, "parameter")
     found = element_break_even(study, design.vehicle, baseline.vehicle, index, element, study.method(method))
     return {

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import DesignError, InerterError, PerformanceIndexError
+from inerter.errors import InerterError
 from inerter.kernels.network_norms import SHARP, TradeOff, indices
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Method
@@ -29,9 +29,8 @@ from inerter.network_search.results import FoundNetwork, SearchResult
 from inerter.networks.enumeration import Topology
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import quasi_random_points
-from inerter.pareto_fronts.pareto import points_at_aims
-from inerter.pareto_fronts.points import FrontPoint, non_dominated
-from inerter.validation import is_whole
+from inerter.pareto_fronts.pareto import check_criteria, points_at_aims
+from inerter.pareto_fronts.points import FrontPoint, non_dominated, triangle_steps
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -123,20 +122,14 @@ def plan_front(
     vehicle: Vehicle,
     several: Sequence[IndexLike],
     method: Method,
-    subject_to: Sequence[Limit] = (),
-    seed: int = 0,
-    starts: int | None = None,
-    points: int = 25,
+    subject_to: Sequence[Limit],
+    seed: int,
+    starts: int | None,
+    points: int,
 ) -> FrontPlan:
     """The search for a front as a plan; raises what `plan_search` and `pareto_front` raise."""
-    if len(several) not in (2, 3):
-        raise PerformanceIndexError(f"A front over networks requires two or three indices, got {len(several)}.")
-    if len(set(map(repr, several))) < len(several):
-        raise PerformanceIndexError("A front over networks requires different indices; one is repeated.")
-    least = 3 if len(several) == 2 else 6
-    if not is_whole(points, least):
-        raise DesignError(f"A front of {len(several)} indices requires at least {least} points, got points={points!r}.")
-    plans = tuple(plan_search(vehicle, one, method, subject_to, seed, starts) for one in several)
+    criteria = check_criteria(several, points)
+    plans = tuple(plan_search(vehicle, one, method, subject_to, seed, starts) for one in criteria)
     return FrontPlan(plans, int(points))
 
 
@@ -327,7 +320,7 @@ def _scale(plan: FrontPlan, ends: Sequence[_SingleOptima]) -> FrontScale | None:
     size = np.where(traded, size, np.abs(ideal))
     scale = FrontScale(ideal, size, np.zeros((0, count)), plan.compiled_index is not None)
     if count == 3:
-        steps = int(np.ceil(0.5 * (np.sqrt(8.0 * plan.points + 1.0) - 3.0)))
+        steps = triangle_steps(plan.points)
         shares = [one for one in product(range(steps + 1), repeat=3) if sum(one) == steps]
         return replace(scale, aims=np.array(shares[::-1]) / steps)
     places = []  # of the single optima of all networks up to each number of elements, along the line

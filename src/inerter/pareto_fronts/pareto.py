@@ -39,6 +39,7 @@ from inerter.pareto_fronts.points import (
     non_dominated,
     thin_out,
     thin_out_triangle,
+    triangle_steps,
 )
 from inerter.validation import check_whole, is_whole
 from inerter.vehicle.vehicle import Vehicle
@@ -84,7 +85,9 @@ def pareto_front(
     array([[  2.428, 503.131],
            [  2.437, 501.205]])
     """
-    criteria = _check_request(vehicle, indices, method, points)
+    criteria = check_criteria(indices, points)
+    for one in criteria:
+        check_request(vehicle, one, method)
     limits = check_limits(subject_to)
     free = check_free(vehicle)
     check_whole(DesignError, "The seed", seed)
@@ -130,13 +133,15 @@ def points_at_aims(
     return found
 
 
-def _check_request(vehicle: Vehicle, indices: object, method: Method, points: object) -> tuple[IndexLike, ...]:
+def check_criteria(indices: object, points: object) -> tuple[IndexLike, ...]:
+    """The indices of a front.
+
+    Raises `PerformanceIndexError` unless there are two or three different ones, `DesignError` for too few points.
+    """
     if not isinstance(indices, Sequence) or isinstance(indices, str):
         raise PerformanceIndexError(f"A Pareto front requires two or three indices, got {indices!r}.")
     if len(indices) not in (2, 3):
         raise PerformanceIndexError(f"A Pareto front requires two or three indices, got {len(indices)}.")
-    for one in indices:
-        check_request(vehicle, one, method)
     if len(set(map(repr, indices))) < len(indices):
         raise PerformanceIndexError("A Pareto front requires different indices; one is repeated.")
     least = 3 if len(indices) == 2 else 6
@@ -334,7 +339,7 @@ class _Trade:
 
     def over_triangle(self, ends: Sequence[FrontPoint], count: int) -> list[FrontPoint]:
         """The front of three criteria: the fronts of each two, and points between them."""
-        steps = int(np.ceil(0.5 * (np.sqrt(8.0 * count + 1.0) - 3.0)))
+        steps = triangle_steps(count)
         found = list(ends)
         for i, j in combinations(range(3), 2):
             along = self.between([ends[i], ends[j]], steps + 1, (i, j))

@@ -65,6 +65,11 @@ def thin_out(
     return found
 
 
+def triangle_steps(count: int) -> int:
+    """The number of steps on each side of a triangle of at least `count` evenly spaced points."""
+    return int(np.ceil(0.5 * (np.sqrt(8.0 * count + 1.0) - 3.0)))
+
+
 def thin_out_triangle(found: list[FrontPoint], count: int, ends: Sequence[FrontPoint]) -> list[FrontPoint]:
     """At most `count` points of three criteria, without those closest together; the ends are kept."""
     found = list(found)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from inerter.decision.of_study import decisive_method
 from inerter.errors import StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
@@ -18,7 +19,7 @@ from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import capital, format_list, format_quantity
 from inerter.methods.method import Method
-from inerter.methods.registry import brief_words_of, is_blind, with_decisive_method
+from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.report.index_summary import best_layouts
@@ -57,9 +58,9 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         design, baseline = (
             best_design(study, designs, layout, self.index) for layout in (self.layout, str(study.baseline))
         )
-        method = study.method(budget_method(study), threads)
-        found = element_break_even(study, design, baseline, self.index, self.parameter, method)
-        status = with_decisive_method(found.status, budget_method(study))
+        method = decisive_method(study.evaluate)
+        found = element_break_even(study, design, baseline, self.index, self.parameter, study.method(method, threads))
+        status = with_decisive_method(found.status, method)
         return self._answer(study, found, status.kind.value, status.message)
 
     def failed_result(self, study: Study, message: str) -> BudgetAnswer:
@@ -73,7 +74,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             index=self.index,
             parameter=self.parameter,
             unit=element.unit,
-            method=budget_method(study),
+            method=decisive_method(study.evaluate),
             at_most=element.may_vanish,
             value=found.value if found and known else None,
             standard_error=number_or_none(found and found.standard_error),
@@ -189,11 +190,6 @@ class Budgets(Task[BudgetAnswer]):
                 for message, of in _alike(data, own, lambda found: found.doubt):
                     told.append(f"Not certain for {what[0].lower()}{what[1:]}, {layout}, {of}: {message}.")
                 yield " ".join(told)
-
-
-def budget_method(study: Study) -> str:
-    """First method of `evaluate` that models friction, else the first method."""
-    return next((method for method in study.evaluate if not is_blind(method)), study.evaluate[0])
 
 
 def element_break_even(

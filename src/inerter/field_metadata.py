@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any
 
 from inerter.formatting import in_words
 
@@ -64,9 +64,6 @@ class TypedField:
     example: str  # in TOML
     key: str = ""  # in files, if it differs from the name
     needed: bool = False  # whether it is required
-
-
-Declared = TypeVar("Declared", TextChoice, TypedField)
 
 
 def quantity(
@@ -142,42 +139,43 @@ def mount(sentence: str) -> Mapping[str, Any]:
 
 def fields_of(kind: type) -> tuple[Field, ...]:
     """Quantities of a dataclass, in the order of its fields."""
-    return _declared_fields(kind)[0]
+    return _declared(kind, _QUANTITY)
 
 
 def choices_of(kind: type) -> tuple[TextChoice, ...]:
     """Choices of text of a dataclass, in the order of its fields."""
-    return tuple(_with_field_name(f, f.metadata[_CHOICE]) for f in dataclasses.fields(kind) if _CHOICE in f.metadata)
+    return _declared(kind, _CHOICE)
 
 
 def typed_fields_of(kind: type) -> tuple[TypedField, ...]:
     """Typed settings of a dataclass, in the order of its fields."""
-    return tuple(_with_field_name(f, f.metadata[_FORMED]) for f in dataclasses.fields(kind) if _FORMED in f.metadata)
-
-
-def mounts_of(kind: type) -> tuple[str, ...]:
-    """Names of the mounted networks of a dataclass, in the order of its fields."""
-    return tuple(_declared_fields(kind)[1])
-
-
-def needed_mounts_of(kind: type) -> tuple[str, ...]:
-    """Names of the required networks of a dataclass, in the order of its fields."""
-    return tuple(name for name, needed in _declared_fields(kind)[1].items() if needed)
+    return _declared(kind, _FORMED)
 
 
 @cache
-def _declared_fields(kind: Any) -> tuple[tuple[Field, ...], dict[str, bool]]:
-    every = dataclasses.fields(kind)
-    quantities = tuple(_quantity_of(field) for field in every if _QUANTITY in field.metadata)
-    return quantities, {f.name: f.default is dataclasses.MISSING for f in every if _MOUNT in f.metadata}
+def mounts_of(kind: Any) -> tuple[str, ...]:
+    """Names of the mounted networks of a dataclass, in the order of its fields."""
+    return tuple(field.name for field in dataclasses.fields(kind) if _MOUNT in field.metadata)
 
 
-def _with_field_name(field: dataclasses.Field[Any], declared: Declared) -> Declared:
-    needed = field.default is field.default_factory is dataclasses.MISSING
-    return dataclasses.replace(declared, name=field.name, key=declared.key or field.name, needed=needed)
+@cache
+def needed_mounts_of(kind: Any) -> tuple[str, ...]:
+    """Names of the required networks of a dataclass, in the order of its fields."""
+    return tuple(field.name for field in dataclasses.fields(kind) if _MOUNT in field.metadata and _is_needed(field))
 
 
-def _quantity_of(field: dataclasses.Field[Any]) -> Field:
-    declared: Field = field.metadata[_QUANTITY]
+@cache
+def _declared(kind: Any, what: str) -> tuple[Any, ...]:
+    fields = dataclasses.fields(kind)
+    return tuple(_with_field(field, field.metadata[what]) for field in fields if what in field.metadata)
+
+
+def _with_field(field: dataclasses.Field[Any], declared: Any) -> Any:
+    """A declaration with what the dataclass field says by itself: its name, and its default or whether it has one."""
     default = field.default if isinstance(field.default, float) else None
-    return dataclasses.replace(declared, name=field.name, key=declared.key or field.name, default=default)
+    own = {"default": default} if isinstance(declared, Field) else {"needed": _is_needed(field)}
+    return dataclasses.replace(declared, name=field.name, key=declared.key or field.name, **own)
+
+
+def _is_needed(field: dataclasses.Field[Any]) -> bool:
+    return field.default is field.default_factory is dataclasses.MISSING

@@ -66,6 +66,16 @@ class TypedField:
     needed: bool = False  # whether it is required
 
 
+@dataclasses.dataclass(frozen=True)
+class MountField:
+    """Network that is mounted in a vehicle."""
+
+    name: str
+    sentence: str
+    key: str = ""
+    needed: bool = False  # whether it is required
+
+
 def quantity(
     unit: str,
     sentence: str,
@@ -134,7 +144,7 @@ def mount(sentence: str) -> Mapping[str, Any]:
     >>> field(metadata=it.mount("Between body and wheel.")).metadata is not None
     True
     """
-    return {_MOUNT: sentence}
+    return {_MOUNT: MountField("", sentence)}
 
 
 def fields_of(kind: type) -> tuple[Field, ...]:
@@ -152,16 +162,14 @@ def typed_fields_of(kind: type) -> tuple[TypedField, ...]:
     return _declared(kind, _FORMED)
 
 
-@cache
-def mounts_of(kind: Any) -> tuple[str, ...]:
+def mounts_of(kind: type) -> tuple[str, ...]:
     """Names of the mounted networks of a dataclass, in the order of its fields."""
-    return tuple(field.name for field in dataclasses.fields(kind) if _MOUNT in field.metadata)
+    return tuple(one.name for one in _declared(kind, _MOUNT))
 
 
-@cache
-def needed_mounts_of(kind: Any) -> tuple[str, ...]:
+def needed_mounts_of(kind: type) -> tuple[str, ...]:
     """Names of the required networks of a dataclass, in the order of its fields."""
-    return tuple(field.name for field in dataclasses.fields(kind) if _MOUNT in field.metadata and _is_needed(field))
+    return tuple(one.name for one in _declared(kind, _MOUNT) if one.needed)
 
 
 @cache
@@ -173,9 +181,6 @@ def _declared(kind: Any, what: str) -> tuple[Any, ...]:
 def _with_field(field: dataclasses.Field[Any], declared: Any) -> Any:
     """A declaration with what the dataclass field says by itself: its name, and its default or whether it has one."""
     default = field.default if isinstance(field.default, float) else None
-    own = {"default": default} if isinstance(declared, Field) else {"needed": _is_needed(field)}
+    is_needed = field.default is field.default_factory is dataclasses.MISSING
+    own = {"default": default} if isinstance(declared, Field) else {"needed": is_needed}
     return dataclasses.replace(declared, name=field.name, key=declared.key or field.name, **own)
-
-
-def _is_needed(field: dataclasses.Field[Any]) -> bool:
-    return field.default is field.default_factory is dataclasses.MISSING

@@ -8,7 +8,7 @@ import numpy as np
 from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
-from inerter.methods.network_norm import free_strut
+from inerter.methods.network_norm import index_over_strut
 
 INDICES = [it.RideComfort(ROAD), it.TyreLoad(ROAD), it.LoadCarrying()]
 CAR = paper_quarter_car(
@@ -44,7 +44,7 @@ def test_a_vehicle_is_prepared_once_for_all_its_struts():
     struts = [it.Spring(80e3) | c, it.Spring(120e3) | c - b, it.Spring(120e3) | (it.Spring(1e6) - b) | c]
     heavy = it.QuarterCar(300.0, 25.0, 120e3, struts[0])
     for index in INDICES:
-        found = [free_strut(car, index)[0] for car in [*map(paper_quarter_car, struts), heavy]]
+        found = [index_over_strut(car, index).index for car in [*map(paper_quarter_car, struts), heavy]]
         assert found[0] is found[1] is found[2] is not found[3]
         best = [it.optimise(car, index, it.Norm()) for car in (paper_quarter_car(struts[0]), heavy)]
         assert best[0].value != best[1].value

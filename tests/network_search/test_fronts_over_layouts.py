@@ -71,7 +71,7 @@ def test_no_random_design_is_better(most):
         one = result.front[int(rng.integers(len(result.front)))]
         topology = one.topology if near else topologies[int(rng.integers(len(topologies)))]
         lower, upper = np.array(plans[0].ends(topology)).T
-        over = [plan.compiled_index.over(plan.network(topology), lower, upper) for plan in plans]
+        over = [plan.compiled_index.over(plan.network(topology)) for plan in plans]
         points = lower * (upper / lower) ** rng.random((50, lower.size))
         if near:
             points = np.array([*one.parameters.values()]) * np.exp(rng.normal(0.0, 0.03, points.shape))
@@ -219,8 +219,7 @@ def test_the_slopes_of_the_excess_are_those_of_differences(number):
     joined, criterion = join_indices([plan.compiled_index for plan in plans])
     damped = [one for one in plans[0].topologies if one.counts["c"]]
     topology = damped[int(rng.integers(len(damped)))]
-    lower, upper = np.array(plans[0].ends(topology)).T
-    over = joined.over(plans[0].network(topology), lower, upper)
+    over = joined.over(plans[0].network(topology))
     values = np.array([{"k": 1e5, "c": 5e3, "b": 300.0}[kind] for kind in topology.kinds])
     values *= np.exp(rng.normal(0.0, 0.3, values.size))
     trade_off = TradeOff(criterion, np.array([2.4, 500.0]), np.array([0.1, 10.0]), 0.02)

@@ -169,49 +169,49 @@ class NetworkIndex:
         """Whether the index is a peak gain."""
         return self.definition.is_peak
 
-    def search(self, network: Network, lower: Array, upper: Array, samples: Array) -> CompiledSearch | None:
-        """Optima over the free values of a network, in the order in which they first occur, between these bounds.
-
-        One start for each `TRIED` rows of `samples` (rows, values) in the unit cube. None if the index is infinite for
-        all values, and for values that are tied.
-        """
-        over = self.over(network, lower, upper)
-        return None if over is None else over.search(samples)
-
-    def over(self, network: Network, lower: Array, upper: Array) -> IndexOverNetwork | None:
-        """The index over the free values of a network; None where `search` gives None."""
+    def over(self, network: Network) -> IndexOverNetwork | None:
+        """The index over the free values of a network; None if it is infinite for all of them, and for tied values."""
         program = network_program(network)
         port, leaves = self.port(program), [element.value for element in network.elements()]
         if port is None or port.weights.size == 0 or any(isinstance(value, Tied) for value in leaves):
             return None
-        names = list(dict.fromkeys(value.name for value in leaves if isinstance(value, Free)))
-        of_leaf = [names.index(value.name) if isinstance(value, Free) else -1 for value in leaves]
         if any(element.gain != 1.0 for element in network.elements()):
             return None
+        free_values = {str(value.name): value for value in leaves if isinstance(value, Free)}
+        names = tuple(free_values)
+        of_leaf = [names.index(str(value.name)) if isinstance(value, Free) else -1 for value in leaves]
         numbers = [1.0 if isinstance(value, Free) else float(value) for value in leaves]  # type: ignore[arg-type]
+        lower, upper = np.array([[value.lower, value.upper] for value in free_values.values()]).reshape(-1, 2).T
         variables = Variables(np.array(numbers), np.array(of_leaf), np.log(lower), np.log(upper))
-        assert lower.size == upper.size == len(names), "names of free values are unique"
-        is_regular = port.weights.size == len(self.functions)
-        return IndexOverNetwork(self.definition, variables, program.program, port, (lower, upper), is_regular)
+        return IndexOverNetwork(self, names, variables, program.program, port, (lower, upper))
 
 
 @dataclass(frozen=True, eq=False)
 class IndexOverNetwork:
-    """An index over the free values of one network, for compiled code."""
+    """An index over the free values of one network, in the order in which they first occur, for compiled code."""
 
-    definition: IndexDefinition
+    index: NetworkIndex
+    names: tuple[str, ...]
     variables: Variables
     program: Program
     port: Port
     ends: tuple[Array, Array]
-    is_regular: bool
 
     def values(self, points: Array) -> Array:
-        """The index at each row of free values, of r.m.s. values; infinite where it is not known."""
+        """The index at each row of free values; infinite where it is not known.
+
+        A design has the same digits side by side with others and, where that is not compiled, in turn.
+        """
         of_leaf = self.variables.of_leaf
-        rows = np.tile(self.variables.values, (points.shape[0], 1))
-        rows[:, of_leaf >= 0] = points[:, of_leaf[of_leaf >= 0]]
-        return np.asarray(indices(rows, self.program, self.port, np.zeros((0, of_leaf.size)), np.zeros(len(rows))))
+        rows = np.repeat(self.variables.values[:, None], len(points), axis=1)
+        rows[of_leaf >= 0] = points.T[of_leaf[of_leaf >= 0]]
+        own, errors, in_lanes = (self.program, self.port), np.empty(len(points)), compiler_mode() == TUNED
+        if self.index.is_peak:
+            peaks = (peaks_in_lanes if in_lanes else peaks_in_turn)(rows, *own, errors)
+            return np.asarray(peaks * np.sqrt(self.port.weights[0]))
+        if in_lanes:
+            return np.asarray(indices_in_lanes(rows, *own, errors))
+        return np.asarray(indices(np.ascontiguousarray(rows.T), *own, np.zeros((0, len(rows))), errors))
 
     def search(self, samples: Array, tried: int = TRIED, trade_off: TradeOff = _INDEX_ALONE) -> CompiledSearch:
         """Optima of the index from the best of each `tried` rows of `samples` (rows, values) in the unit cube.
@@ -222,11 +222,12 @@ class IndexOverNetwork:
         starts = samples.shape[0] // tried
         points, counts = np.zeros((starts, lower.size)), np.zeros(starts, np.int64)
         given = samples, tried, self.variables, self.program, self.port
-        if self.definition.is_peak:
+        if self.index.is_peak:
             values = np.asarray(search_network_peak(*given, points, counts)) * np.sqrt(self.port.weights[0])
         else:
             values = np.asarray(search_network(*given, trade_off, points, counts))
-        return CompiledSearch(snap_to_bounds(points, lower, upper), values, counts, self.is_regular)
+        is_regular = self.port.weights.size == len(self.index.functions)
+        return CompiledSearch(snap_to_bounds(points, lower, upper), values, counts, is_regular)
 
 
 def join_indices(several: Sequence[NetworkIndex]) -> tuple[NetworkIndex, NDArray[np.int64]]:
@@ -240,6 +241,11 @@ def join_indices(several: Sequence[NetworkIndex]) -> tuple[NetworkIndex, NDArray
         np.concatenate([one.groups + start for one, start in zip(several, first, strict=True)]),
     )
     return together, np.repeat(np.arange(len(several)), counts)
+
+
+def values_kernel() -> Any:
+    """The compiled code of an index of r.m.s. values of many designs: side by side, or in turn."""
+    return indices_in_lanes if compiler_mode() == TUNED else indices
 
 
 def network_kernel(definition: IndexDefinition) -> Any:
@@ -291,8 +297,8 @@ def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str)
     )
 
 
-def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] | None:
-    """The linearised network of the strut that has all free values, and the index over its admittance.
+def index_over_strut(vehicle: Vehicle, index: Index) -> IndexOverNetwork | None:
+    """The index over the linearised network of the strut that has all free values.
 
     None where there is no such strut, and where compiled code cannot give the index.
     """
@@ -317,7 +323,7 @@ def free_strut(vehicle: Vehicle, index: Index) -> tuple[NetworkIndex, Network] |
             found = _remembered_index(_Question(structure, tuple(structure.values), definition))
     except InerterError:  # for an output of an element of the strut
         return None
-    return None if found is None else (found, network)
+    return None if found is None else found.over(network)
 
 
 @dataclass(frozen=True)
@@ -334,48 +340,7 @@ def _remembered_index(question: _Question) -> NetworkIndex | None:
     return network_index(question.structure.mechanism, question.definition, PLACE)
 
 
-@dataclass(frozen=True, eq=False)
-class _CompiledStrut:
-    """An index over the values of a strut that has all free values, as data of compiled code."""
-
-    elements: tuple[Element, ...]
-    program: Program
-    port: Port
-    is_peak: bool
-
-    def values(self, points: Mapping[str, Array], count: int) -> Array:
-        """The index at many values of the free values, infinite where unknown.
-
-        A design has the same digits side by side with others and, where that is not compiled, in turn.
-        """
-        rows = np.empty((len(self.elements), count))
-        for row, element in zip(rows, self.elements, strict=True):
-            value: Any = element.value
-            row[:] = points[str(value.name)] if isinstance(value, Free) else value
-        own, errors, in_lanes = (self.program, self.port), np.empty(count), compiler_mode() == TUNED
-        if self.is_peak:
-            peaks = (peaks_in_lanes if in_lanes else peaks_in_turn)(rows, *own, errors)
-            return np.asarray(peaks * np.sqrt(self.port.weights[0]))
-        if in_lanes:
-            return np.asarray(indices_in_lanes(rows, *own, errors))
-        return np.asarray(indices(np.ascontiguousarray(rows.T), *own, np.zeros((0, len(rows))), errors))
-
-
-def _compile_strut(vehicle: Vehicle, index: Index) -> _CompiledStrut | None:
-    strut = free_strut(vehicle, index)
-    if strut is None:
-        return None
-    over, network = strut
-    program = network_program(network)
-    port, elements = over.port(program), tuple(network.elements())
-    if port is None or any(isinstance(e.value, Tied) or e.gain != 1.0 for e in elements):
-        return None
-    if over.is_peak and port.weights.size != 1:
-        return None
-    return _CompiledStrut(elements, program.program, port, over.is_peak)
-
-
-_remembered: Any = lru_cache(64)(_compile_strut)  # designs of one layout may come in parts
+_remembered: Any = lru_cache(64)(index_over_strut)  # designs of one layout may come in parts
 
 
 def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array | None:
@@ -385,11 +350,12 @@ def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]
     """
     try:
         hash((vehicle, index))
-        strut = _remembered(vehicle, index)
+        over = _remembered(vehicle, index)
     except TypeError:  # a mechanism, or an index with matrices
-        strut = _compile_strut(vehicle, index)
-    if strut is None:
+        over = index_over_strut(vehicle, index)
+    if over is None:
         return None
-    values: Array = strut.values(points, next(iter(points.values())).size)
+    count = next(iter(points.values())).size
+    values: Array = over.values(np.array([points[name] for name in over.names]).reshape(-1, count).T)
     values[np.isinf(values)] = np.nan
     return values

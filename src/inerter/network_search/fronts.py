@@ -19,10 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
-from inerter.kernels.network_norms import SHARP, TradeOff, indices
+from inerter.kernels.network_norms import SHARP, TradeOff
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.method import Method
-from inerter.methods.network_norm import TRIED, NetworkIndex, join_indices
+from inerter.methods.network_norm import TRIED, NetworkIndex, join_indices, values_kernel
 from inerter.network_search.front_results import FrontDesign, NetworkFront, collect_front
 from inerter.network_search.plan import SearchPlan, plan_search
 from inerter.network_search.results import FoundNetwork, SearchResult
@@ -64,7 +64,7 @@ class FrontPlan:
 
     def kernels(self) -> list[Any]:
         """Compiled code that the search calls."""
-        more = [] if self.compiled_index is None else [indices]
+        more = [] if self.compiled_index is None else [values_kernel()]
         return list(dict.fromkeys([*(kernel for plan in self.plans for kernel in plan.kernels()), *more]))
 
 
@@ -149,12 +149,12 @@ def _points_compiled(plan: FrontPlan, scale: FrontScale, task: FrontTask) -> Net
     assert plan.compiled_index is not None
     joined, criterion = plan.compiled_index
     first, size = plan.plans[0], task.topology.size
-    network, names = first.network(task.topology), task.topology.names(first.taken_names)
-    lower, upper = np.array(first.ends(task.topology)).T
-    over = joined.over(network, lower, upper)
-    each = [one.compiled_index.over(network, lower, upper) for one in plan.plans if one.compiled_index is not None]
+    network = first.network(task.topology)
+    over = joined.over(network)
+    each = [one.compiled_index.over(network) for one in plan.plans if one.compiled_index is not None]
     if over is None or any(one is None for one in each):
         return NetworkPoints(task.topology, reason="an index is infinite for all values")
+    names, (lower, upper) = over.names, over.ends
     spread = np.log(upper / lower)
 
     def values_at(points: Array) -> Array:
@@ -286,10 +286,10 @@ def _all_values(plan: FrontPlan, own: Sequence[FoundNetwork]) -> Array:
     """Values of all indices at the best values in each (optima, indices)."""
     if plan.compiled_index is not None:
         first = plan.plans[0]
-        network, (lower, upper) = first.network(own[0].topology), np.array(first.ends(own[0].topology)).T
+        network = first.network(own[0].topology)
         names = own[0].topology.names(first.taken_names)
         points = np.array([[one.parameters[name] for name in names] for one in own])
-        over = [one.compiled_index.over(network, lower, upper) for one in plan.plans if one.compiled_index is not None]
+        over = [one.compiled_index.over(network) for one in plan.plans if one.compiled_index is not None]
         return np.column_stack([np.full(len(own), np.inf) if one is None else one.values(points) for one in over])
     asked = [one.index for one in plan.plans]
     return np.array([[estimate_of(one.design, index, one.plan.method).value for index in asked] for one in own])

@@ -182,23 +182,17 @@ def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNe
 
 def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     assert plan.compiled_index is not None
-    network = plan.network(topology)
-    lower, upper = np.array(plan.ends(topology)).T
     starts = plan.starts or _STARTS * topology.size
-    found = plan.compiled_index.search(
-        network, lower, upper, quasi_random_points(starts * TRIED, topology.size, plan.seed)
-    )
-    if found is None:  # for an index that is infinite, or zero, whatever the values
+    over = plan.compiled_index.over(plan.network(topology))
+    if over is None:  # for an index that is infinite, or zero, whatever the values
         return _search_by_optimise(plan, topology)
+    found = over.search(quasi_random_points(starts * TRIED, topology.size, plan.seed))
     if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
         starts *= _MORE
-        found = plan.compiled_index.search(
-            network, lower, upper, quasi_random_points(starts * TRIED, topology.size, plan.seed)
-        )
-        assert found is not None
+        found = over.search(quasi_random_points(starts * TRIED, topology.size, plan.seed))
     values, points = found.values, found.points
     if not np.isfinite(values.min()):  # without damping, or with less than compiled code can tell from none
-        middle = dict(zip(topology.names(plan.taken_names), np.sqrt(lower * upper).tolist(), strict=True))
+        middle = dict(zip(topology.names(plan.taken_names), np.sqrt(np.prod(over.ends, axis=0)).tolist(), strict=True))
         estimate = estimate_of(plan.design(topology).with_values(middle), plan.index, plan.method)
         if np.isfinite(estimate.value):
             return _search_by_optimise(plan, topology)

@@ -20,7 +20,7 @@ from inerter.methods.compiled_norm import CompiledNorm
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite, objective_of
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
 from inerter.methods.multisine_lines import SampledObjective
-from inerter.methods.network_norm import TRIED, free_strut
+from inerter.methods.network_norm import TRIED, index_over_strut
 from inerter.methods.norm import Norm, is_exact_norm
 from inerter.methods.objective import Differentiable, Objective, snap_to_bounds
 from inerter.methods.registry import with_gradients
@@ -253,16 +253,14 @@ def _compiled_searches(
     objective = problem.objective
     if problem.bounds or not isinstance(objective, CompiledNorm) or not is_exact_norm(method) or is_composite(index):
         return None
-    strut = free_strut(vehicle, index)
-    if strut is None:
+    over = index_over_strut(vehicle, index)
+    if over is None:
         return None
-    over, network = strut
-    names = dict.fromkeys(str(e.value.name) for e in network.elements() if isinstance(e.value, Free))
-    order = [list(objective.problem.descriptor.free).index(name) for name in names]
+    order = [list(objective.problem.descriptor.free).index(name) for name in over.names]
     samples = quasi_random_points(starts * TRIED, len(order), seed)
     report("starts", 0, starts, share=0.0)
-    found = over.search(network, problem.lower[order], problem.upper[order], samples)
-    if found is None or not np.isfinite(found.values.min()):
+    found = over.search(samples)
+    if not np.isfinite(found.values.min()):
         return None
     points = np.empty_like(found.points)
     points[:, order] = found.points

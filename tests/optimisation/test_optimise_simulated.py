@@ -9,7 +9,8 @@ from wang_su import J1, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, Spring, free
-from inerter.optimisation.local import LocalOptimum, descend, trust_region
+from inerter.optimisation.constrained_search import ConstrainedProblem, trust_region
+from inerter.optimisation.local import LocalOptimum, descend
 from inerter.work.progress import ProgressStep, receiving_steps
 
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
@@ -113,7 +114,7 @@ class Steps(list):
 def test_a_costly_search_counts_each_evaluation_once(size):
     bowl, steps = Bowl(), Steps()
     with receiving_steps(steps):
-        found = trust_region(bowl, np.full(size, 2.0), np.full(size, 1.0), np.full(size, 10.0))
+        found = trust_region(ConstrainedProblem(bowl, (), np.full(size, 1.0), np.full(size, 10.0)), np.full(size, 2.0))
     np.testing.assert_allclose(found.point, 3.0, rtol=1e-2)
     assert [step.done for step in steps] == list(range(1, bowl.asked + 1))
     assert found.evaluations == bowl.asked

@@ -1,4 +1,4 @@
-"""Local optima under constraints: of an index, or, where no design is feasible, of the constraint violation.
+"""Local optima of a peak gain, and under constraints: of an index or, where no design is feasible, of the violation.
 
 All functions are in logarithms. A smooth function is one row; a maximum of smooth functions has a row for each of its
 peaks: during the approach those of the current point, which gets close in a few steps; then a fixed set, to which
@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 
 from inerter.methods.objective import Differentiable, Objective
 from inerter.optimisation.limits import Bound, Sense
-from inerter.optimisation.local import LocalOptimum, report_costly_search
+from inerter.optimisation.local import LocalOptimum
 from inerter.optimisation.minimax_level import LogRows, lowest_level
 from inerter.optimisation.starts import APPROACHED, TIGHT, converge_promising, searches_from
+from inerter.work.progress import report
 
 Array = NDArray[np.float64]
 KEPT = 1e-7  # tolerance of a constraint, of the logarithm; the exact optimum is on the limit
@@ -119,7 +120,8 @@ def searches(problem: ConstrainedProblem, first: Sequence[Array]) -> list[LocalO
 
 def _approach_minimax(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
     point, count = lowest_level(problem.rows, start, problem.lower, problem.upper, tolerance=1e-7, most_steps=60)
-    return problem.at(point, count + 1)
+    begin, end = (problem.at(one, count + 2) for one in (start, point))
+    return end if _is_better(end, begin, TIGHT) else begin
 
 
 def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOptimum:
@@ -131,7 +133,7 @@ def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOpt
         point, count = lowest_level(fixed, point, problem.lower, problem.upper, tolerance=1e-13, most_steps=100)
         found = problem.at(point, 0)
         evaluations += count + 2
-        if _is_better(found, best):
+        if _is_better(found, best, _EXACTLY):
             best = found
         seen = problem.active_peaks(point)
         if all(peaks is None for peaks in seen) or _is_converged(problem, point, known, found):
@@ -140,9 +142,9 @@ def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOpt
     return replace(best, evaluations=evaluations)
 
 
-def _is_better(one: LocalOptimum, other: LocalOptimum) -> bool:
-    """Whether `one` has a smaller violation than `other`, or a lower value if both are feasible."""
-    if max(one.excess, other.excess) <= _EXACTLY:
+def _is_better(one: LocalOptimum, other: LocalOptimum, kept: float) -> bool:
+    """Whether `one` has a smaller violation than `other`, or a lower value if both violations are below `kept`."""
+    if max(one.excess, other.excess) <= kept:
         return one.value < other.value
     return one.excess < other.excess
 
@@ -158,21 +160,25 @@ def _is_converged(problem: ConstrainedProblem, point: Array, known: Known, found
     return bool(np.log(found.value) <= level + _STANDS_OUT and missed <= _STANDS_OUT)
 
 
-def trust_region_within(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
-    """The local optimum of a costly index near `start`, by a trust-region search without derivatives."""
+def trust_region(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
+    """The local optimum of a costly index near `start`, by a trust-region search without derivatives (COBYQA)."""
     assert problem.objective is not None
     objective, best = problem.objective, [LocalOptimum(start, np.inf, 0, np.inf)]
     memory: dict[bytes, tuple[float, Array]] = {}
-    most = 80 * start.size
+    origin = np.log(start)
+    each, radius = (80, 1e-4) if problem.bounds else (60, 1e-3)
+    most = each * start.size
 
     def at(x: Array) -> tuple[float, Array]:
         if x.tobytes() not in memory:
-            point = np.clip(np.exp(x), problem.lower, problem.upper)[None]
+            is_start = np.array_equal(x, origin)  # whose value may be known
+            point = (start if is_start else np.clip(np.exp(x), problem.lower, problem.upper))[None]
             value = float(objective.values(point)[0])
             over = np.array([float(bound.excess(point)[0]) for bound in problem.bounds])
-            report_costly_search(len(memory) + 1, most, best[0])
-            here = LocalOptimum(point[0], value, 0, float(over.max()))
-            if np.isfinite(value) and _is_no_worse(here, best[0]):
+            here = LocalOptimum(point[0], value, 0, float(over.max(initial=-np.inf)))
+            count, lowest = len(memory) + 1, best[0].value
+            report("evaluations", count, most, best=lowest if np.isfinite(lowest) else None, share=count / most)
+            if np.isfinite(value) and _is_better(here, best[0], KEPT_COSTLY):
                 best[0] = here
             log = float(np.log(value)) if 0.0 < value < np.inf else -_HIDDEN
             memory[x.tobytes()] = log, np.clip(over, _HIDDEN, -_HIDDEN)
@@ -181,19 +187,13 @@ def trust_region_within(problem: ConstrainedProblem, start: Array) -> LocalOptim
     minimize: Any = scipy.optimize.minimize
     minimize(
         lambda x: at(x)[0],
-        np.log(start),
+        origin,
         method="COBYQA",
         bounds=scipy.optimize.Bounds(np.log(problem.lower), np.log(problem.upper)),
-        constraints=scipy.optimize.NonlinearConstraint(lambda x: at(x)[1], -np.inf, 0.0),
-        options={"initial_tr_radius": 0.1, "final_tr_radius": 1e-4, "maxfev": most},
+        constraints=scipy.optimize.NonlinearConstraint(lambda x: at(x)[1], -np.inf, 0.0) if problem.bounds else (),
+        options={"initial_tr_radius": 0.1, "final_tr_radius": radius, "maxfev": most},
     )
     return replace(best[0], evaluations=len(memory))
-
-
-def _is_no_worse(one: LocalOptimum, other: LocalOptimum) -> bool:
-    if max(one.excess, other.excess) <= KEPT_COSTLY:
-        return one.value < other.value
-    return one.excess < other.excess
 
 
 def sensitivities(problem: ConstrainedProblem, point: Array) -> list[float]:

@@ -30,12 +30,6 @@ class LogRows:
     equal_slopes: Array
 
 
-def bounded_rows(logs: Array, slopes: Array) -> LogRows:
-    """Rows that are all bounded by the level."""
-    none = np.zeros(0), np.zeros((0, slopes.shape[1]))
-    return LogRows(logs, slopes, np.ones(logs.size), *none)
-
-
 def lowest_level(
     rows: Callable[[Array], LogRows], start: Array, lower: Array, upper: Array, tolerance: float, most_steps: int
 ) -> tuple[Array, int]:

@@ -22,16 +22,16 @@ from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.network_norm import TRIED, index_over_strut
 from inerter.methods.norm import Norm, is_exact_norm
-from inerter.methods.objective import Differentiable, Objective, snap_to_bounds
+from inerter.methods.objective import Differentiable, snap_to_bounds
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.networks.free_network import check_chosen
 from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult, constraint_results, infeasible, with_limits
-from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region_within
+from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
-from inerter.optimisation.local import LocalOptimum, approach, descend, polish, trust_region
-from inerter.optimisation.starts import APPROACHED, converge_promising, resumable_search, searches_from
+from inerter.optimisation.local import LocalOptimum, descend
+from inerter.optimisation.starts import resumable_search, searches_from
 from inerter.validation import check_whole
 from inerter.vehicle.replace_values import with_networks
 from inerter.vehicle.vehicle import Vehicle
@@ -192,7 +192,7 @@ def _best(
     if compiled is not None:
         found, evaluations = compiled, 0
     elif quick:
-        first, evaluations = _starting_points(problem if limits else objective, lower, upper, starts, seed)
+        first, evaluations = _starting_points(problem, starts, seed)
         found = _searches(problem, first)
     else:
         first = [] if linear is None else [linear]
@@ -312,12 +312,12 @@ def _quick_optima(
             )
             if not (isinstance(problem.objective, Differentiable) and is_smooth(problem.bounds)):
                 continue
-            first, _ = _starting_points(problem if limits else problem.objective, *bounds, starts, seed)
+            first, _ = _starting_points(problem, starts, seed)
         except InerterError:
             continue
         found = sorted(_searches(problem, first, quick=True), key=lambda local: (max(local.excess, KEPT), local.value))
         return [local.point for local in found if np.isfinite(local.value)]
-    return _starting_points(objective_of(vehicle, index, method), *bounds, _MOST_TRIED, seed)[0]
+    return _starting_points(ConstrainedProblem(objective_of(vehicle, index, method), (), *bounds), _MOST_TRIED, seed)[0]
 
 
 def _distinct_points(points: list[Array]) -> list[Array]:
@@ -331,38 +331,28 @@ def _distinct_points(points: list[Array]) -> list[Array]:
 
 def _costly_searches(problem: ConstrainedProblem, tried: list[Array]) -> tuple[list[LocalOptimum], int]:
     """Searches from the best two starts, and the number of starts evaluated to select them."""
-    objective, lower, upper = problem.objective, problem.lower, problem.upper
-    assert objective is not None
-    limited = problem if problem.bounds else objective
-    values = limited.values(np.array(tried)) if tried else np.zeros(0)
+    values = problem.values(np.array(tried)) if tried else np.zeros(0)
     best_first = np.argsort(values, kind="stable")[:_MOST_SEARCHES]
     found = []
     for number, i in enumerate(best_first):
         shares = _QUICK + (1.0 - _QUICK) * np.array([number, number + 1]) / len(best_first)
         with within(f"search {number + 1} of {len(best_first)}", *shares.tolist()):
-            if problem.bounds:
-                search = partial(trust_region_within, problem, tried[i])
-            else:
-                search = partial(trust_region, objective, tried[i], lower, upper)
-            found.append(resumable_search(tried[i], search))
+            found.append(resumable_search(tried[i], partial(trust_region, problem, tried[i])))
     return found, len(tried)
 
 
 def _searches(problem: ConstrainedProblem, first: list[Array], quick: bool = False) -> list[LocalOptimum]:
-    """A local search from each start; for a peak gain only those close to the best are converged fully.
+    """A local search from each start; within limits and for a peak gain only those close to the best are converged.
 
     A `quick` one ends close to where another one has ended.
     """
-    if problem.bounds:
-        return searches(problem, first)
     objective, lower, upper = problem.objective, problem.lower, problem.upper
     assert isinstance(objective, Differentiable)
-    if not first or objective.active(first[0]) is None:
-        return searches_from(
-            first, lambda start, found: descend(objective, start, lower, upper, found if quick else ()), 1.0
-        )
-    near = searches_from(first, lambda start, _: approach(objective, start, lower, upper), APPROACHED)
-    return converge_promising(near, lambda local: polish(objective, local, lower, upper))
+    if problem.bounds or (first and objective.active(first[0]) is not None):
+        return searches(problem, first)
+    return searches_from(
+        first, lambda start, found: descend(objective, start, lower, upper, found if quick else ()), 1.0
+    )
 
 
 def check_free(vehicle: Vehicle) -> dict[str, Free]:
@@ -377,17 +367,16 @@ def check_free(vehicle: Vehicle) -> dict[str, Free]:
     return free
 
 
-def _starting_points(
-    objective: Objective | ConstrainedProblem, lower: Array, upper: Array, starts: int, seed: int
-) -> tuple[list[Array], int]:
+def _starting_points(problem: ConstrainedProblem, starts: int, seed: int) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
+    lower, upper = problem.lower, problem.upper
     count = max(2 ** min(6 + lower.size, 12), 2 ** math.ceil(math.log2(starts)))
     unit = quasi_random_points(count, lower.size, seed)
     points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
     report("samples", 0, len(points), share=0.0)
 
     def best_first() -> list[int]:
-        values = objective.values(points)
+        values = problem.values(points)
         neighbours = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * lower.size + 1)[1])
         order = np.argsort(values, kind="stable").tolist()
         minima = [i for i in order if np.isfinite(values[i]) and values[i] <= values[neighbours[i]].min()]

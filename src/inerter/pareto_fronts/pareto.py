@@ -26,9 +26,9 @@ from inerter.methods.objective import Differentiable
 from inerter.methods.registry import with_gradients
 from inerter.networks.elements import Free
 from inerter.optimisation.active_constraints import constraint_results
-from inerter.optimisation.constrained_search import ConstrainedProblem, refine_minimax, searches, trust_region_within
+from inerter.optimisation.constrained_search import ConstrainedProblem, refine_minimax, searches, trust_region
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
-from inerter.optimisation.local import LocalOptimum, trust_region
+from inerter.optimisation.local import LocalOptimum
 from inerter.optimisation.optimise import check_free, optimise
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.points import (
@@ -363,10 +363,7 @@ class _Trade:
 
 def _costly(problem: ConstrainedProblem, first: Sequence[Array]) -> LocalOptimum:
     start = first[int(np.argmin(problem.values(np.array(first))))]
-    if problem.bounds:
-        return trust_region_within(problem, start)
-    assert problem.objective is not None
-    return trust_region(problem.objective, start, problem.lower, problem.upper)
+    return trust_region(problem, start)
 
 
 def _trade(

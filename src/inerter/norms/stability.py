@@ -35,19 +35,18 @@ class Split:
     poles: NDArray[np.complex128]
     rate: float = 0.0  # size of the whole system's rates [1/s]
 
-    def visible(self, B: Matrix | None = None) -> NDArray[np.bool_]:
-        """True for outputs to which the lasting part connects the inputs, or other input columns `B` (outputs,).
+    def visible(self) -> NDArray[np.bool_]:
+        """True for outputs to which the lasting part connects the inputs (outputs,).
 
         Its Markov parameters C A^k B tell, relative to what sizes of rows and columns could make of them.
         """
         part = self.lasting
-        columns = part.B if B is None else B
         rows_seen = np.zeros(part.C.shape[0], dtype=bool)
         row_size = np.hypot(_norms(part.C, 1), _norms(self.decaying.C, 1))
         column_size = np.hypot(_norms(part.B, 0), _norms(self.decaying.B, 0))
         bound = np.outer(row_size, column_size)
         rate = max(float(np.linalg.norm(part.A)), np.finfo(float).tiny)
-        product = columns
+        product = part.B
         for _ in range(part.A.shape[0]):
             rows_seen |= np.any(np.abs(part.C @ product) > _VISIBLE * bound, axis=1)
             product = part.A @ product / rate

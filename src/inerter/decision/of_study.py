@@ -6,13 +6,12 @@ from collections.abc import Mapping, Sequence
 from math import isclose
 
 from inerter.files.study.limits import limit_text
-from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, format_quantity, format_share
 from inerter.indices.names import title_with_name
 from inerter.methods.method import NonlinearitySupport
-from inerter.methods.registry import brief_words_of, is_blind, nonlinearities_of
+from inerter.methods.registry import brief_words_of, is_blind, nonlinearities_of, simulating_method
 from inerter.networks.elements import Free
 from inerter.systems.graph import switching_parts
 from inerter.vehicle.mechanism import Mechanism

@@ -69,6 +69,11 @@ def nonlinearities_of(name: str) -> NonlinearitySupport:
     return NonlinearitySupport(_kind(name).nonlinearity_support)
 
 
+def simulating_method() -> str:
+    """Name of the first method that models both friction and gaps."""
+    return next(name for name in METHODS if nonlinearities_of(name) is NonlinearitySupport.BOTH)
+
+
 def averages(name: str) -> bool:
     """Whether the values of the method are means over a number of random inputs."""
     return "realisations" in _settings(_kind(name))

@@ -12,14 +12,13 @@ from math import isfinite, isnan, nan
 from inerter.decision.of_study import nonlinear_elements
 from inerter.decision.results import Improvement, percent_below
 from inerter.errors import StatusKind
-from inerter.files.study.method_problems import simulating_method
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed, quick_method, value_at_speed
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import capital, format_list, format_percent_size, format_quantity, format_share
 from inerter.indices.names import title_with_name
 from inerter.methods.method import evaluate
-from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps
+from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps, simulating_method
 from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Series, Spring
 from inerter.networks.elements.algebra import CombinedNetwork

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.methods.method import Method, NonlinearitySupport
-from inerter.methods.registry import METHODS, nonlinearities_of
+from inerter.methods.registry import simulating_method
 from inerter.networks.elements import Element, Free, Tied
 from inerter.validation import check_whole, is_number, is_whole
 from inerter.vehicle.replace_values import (
@@ -154,13 +154,8 @@ def scatter_left_out(vehicle: Vehicle, method: Method, scatter: Scatter, idle: C
     return Status(
         StatusKind.FAILED if len(unseen) == len(scatter.names) else StatusKind.INACCURATE,
         "the linear model neglects friction and treats gaps as closed, and so ignores the tolerance of "
-        f"{' and '.join(unseen)}; use a method that models them, such as {_simulating_method()}",
+        f"{' and '.join(unseen)}; use a method that models them, such as {simulating_method()}",
     )
-
-
-def _simulating_method() -> str:
-    """Name of the first method that models friction and gaps."""
-    return next(name for name in METHODS if nonlinearities_of(name) is NonlinearitySupport.BOTH)
 
 
 def with_free_scatter(vehicle: Vehicle, scatter: Scatter) -> Vehicle:

@@ -12,13 +12,13 @@ from inerter.files.study.place import element_at, place_of
 from inerter.files.study.study import Study, elements_used
 from inerter.indices.registry import INDICES, amplitude_of, as_line, index_settings
 from inerter.methods.registry import (
-    METHODS,
     averages,
     is_blind,
     methods_that,
     missing_settings,
     needs_amplitude,
     refuses_gaps,
+    simulating_method,
 )
 from inerter.networks.elements import Element
 from inerter.systems.graph import switching_parts
@@ -141,11 +141,6 @@ def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[
             fault=f"{name} is a {element.key} element, which linear analysis neglects",
             expected=f"a method that models it in evaluate, such as {quote_value(simulating_method())}",
         )
-
-
-def simulating_method() -> str:
-    """First method that models both friction and gaps."""
-    return next(name for name in METHODS if not is_blind(name) and not refuses_gaps(name))
 
 
 def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:

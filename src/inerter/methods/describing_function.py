@@ -65,8 +65,7 @@ class HarmonicBalance:
     @cached_property
     def arrays(self) -> tuple[Any, ...]:
         """The descriptor as compiled code takes it."""
-        names = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
-        return tuple(np.ascontiguousarray(getattr(self.descriptor, name), dtype=float) for name in names)
+        return self.descriptor.arrays
 
     @cached_property
     def places(self) -> NDArray[np.int64]:

@@ -15,21 +15,18 @@ from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filters import Filter
 from inerter.systems.input_paths import apply_excitation, columns_of, inputs_of
 
-STACKS = ("S", "R", "F", "X_eta", "X_x", "X_u", "Y_eta", "Y_x", "Y_u")
-
 
 def stacks_of(descriptor: Descriptor) -> tuple[tuple[Any, ...], tuple[Any, Any]]:
-    """The descriptor's arrays in the order in which compiled code takes them.
+    """The descriptor's arrays; also S, [R F], Y_eta and [Y_x Y_u] in a row, and their rounding errors.
 
-    Also S, [R F], Y_eta and [Y_x Y_u] in a row, and their rounding errors: no entries where these are zero.
+    Errors that are all zero have no entries.
     """
     d = descriptor
     stacks = (d.S, np.concatenate([d.R, d.F], axis=2), d.Y_eta, np.concatenate([d.Y_x, d.Y_u], axis=2))
     stack = np.concatenate([part.reshape(part.shape[0], -1) for part in stacks], axis=1)
     rounded = np.ascontiguousarray(stack, dtype=float)
     lost = np.ascontiguousarray(stack - rounded, dtype=float)
-    arrays = tuple(np.ascontiguousarray(getattr(d, name), dtype=float) for name in STACKS)
-    return arrays, (rounded, lost if lost.any() else np.zeros((0, 0)))
+    return d.arrays, (rounded, lost if lost.any() else np.zeros((0, 0)))
 
 
 def modal_arguments(problem: LinearProblem) -> tuple[Any, Any, Any] | None:

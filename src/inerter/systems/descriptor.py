@@ -91,6 +91,12 @@ class Descriptor:
         """S, R, F, Y_eta, Y_x and Y_u, which are affine in the free values."""
         return self.S, self.R, self.F, self.Y_eta, self.Y_x, self.Y_u
 
+    @property
+    def arrays(self) -> tuple[Matrix, ...]:
+        """All arrays in the order in which compiled code takes them."""
+        all_arrays = self.S, self.R, self.F, self.X_eta, self.X_x, self.X_u, self.Y_eta, self.Y_x, self.Y_u
+        return tuple(np.ascontiguousarray(array, dtype=float) for array in all_arrays)
+
     def with_stacks(self, stacks: Iterable[Matrix], sizes: Iterable[Matrix], **others: Any) -> Descriptor:
         """Copy with other stacks, their sizes, and other attributes by name."""
         S, R, F, Y_eta, Y_x, Y_u = stacks

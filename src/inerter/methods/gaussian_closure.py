@@ -32,6 +32,7 @@ from inerter.methods.error_bounds import with_error_sources
 from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.notes import Note
+from inerter.methods.objective import Smooth
 from inerter.norms.response import frequency_response
 from inerter.systems.descriptor import close
 from inerter.systems.outputs import force_of, of_mount, velocity_of
@@ -291,7 +292,7 @@ class DamperSolution:
 
 
 @dataclass(frozen=True, eq=False)
-class GaussianClosure:
+class GaussianClosure(Smooth):
     """An index of r.m.s. values as a function of the free values, with friction: `Differentiable`.
 
     Gradients are those of the norms, with the dampers by implicit differentiation of their equations. The index is
@@ -447,14 +448,6 @@ class GaussianClosure:
             if parts.places[i] >= 0:
                 force[row_of, parts.places[i]] -= 1.0 / point[parts.places[i]]
         return value, design - (on_damping[slips] * damping) @ np.linalg.solve(force_damping, force)
-
-    def active(self, point: Array) -> Array | None:
-        """None: the index is smooth."""
-        return None
-
-    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """Not implemented: `active` returns None, so the index has no components."""
-        raise NotImplementedError
 
     def estimate(self) -> Estimate:
         """The index of a design without free values."""

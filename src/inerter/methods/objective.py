@@ -39,6 +39,17 @@ class Differentiable(Objective, Protocol):
         ...
 
 
+class Smooth:
+    """The components of a `Differentiable` that is one smooth function: it has none."""
+
+    def active(self, point: Array) -> None:
+        """None, as for every smooth index."""
+
+    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
+        """Never asked for, as none is active."""
+        raise NotImplementedError
+
+
 def snap_to_bounds(points: Array, lower: Array, upper: Array) -> Array:
     """Values of a search in logarithms, which miss their bounds by a rounding, with the bounds in their place."""
     for end in (lower, upper):

@@ -12,6 +12,7 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.definition import Index
 from inerter.methods.error_bounds import ROUNDING
 from inerter.methods.method import Estimate, Method
+from inerter.methods.objective import Smooth
 from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Friction, Network, Parallel
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import UpsideDown, expand_elements, linearise
@@ -80,7 +81,7 @@ def static_stiffness(mount: str) -> StaticStiffness:
 
 
 @dataclass(frozen=True, eq=False)
-class _Stiffness:
+class _Stiffness(Smooth):
     """A `Differentiable` that needs no method."""
 
     network: Network
@@ -94,13 +95,6 @@ class _Stiffness:
         """The stiffness and its gradient at one point."""
         value, gradient = self._value_and_gradients(point[None])
         return float(np.broadcast_to(value, (1,))[0]), np.broadcast_to(gradient, (point.size, 1))[:, 0].copy()
-
-    def active(self, point: Array) -> None:
-        """None: the stiffness is a smooth function."""
-
-    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """Not available: a static stiffness is one smooth function."""
-        raise AssertionError("a static stiffness is one smooth function")
 
     def _value_and_gradients(self, points: Array) -> tuple[Array, Array]:
         left = linearise(expand_elements(self.network, _at_rest))

@@ -18,7 +18,7 @@ from inerter.indices.definition import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.conditions import OverConditions, values_changed
 from inerter.methods.method import Estimate, Method, constituents_of
-from inerter.methods.objective import Differentiable, Objective
+from inerter.methods.objective import Differentiable, Objective, Smooth
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.uncertainty.distributions import (
@@ -152,7 +152,7 @@ class Quantile(OfIndex):
         own, after = nominal(vehicle, self.scatter), source_values(vehicle, self.scatter)
         names = tuple(vehicle.free_values()), tuple(loose.free_values())
         plain = _Values(self, inner, *names, tuple(own.items()), tuple(after.items()))
-        return _Smooth(plain) if isinstance(inner, Differentiable) else plain
+        return _Quantile(plain) if isinstance(inner, Differentiable) else plain
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,8 +200,8 @@ class _Values:
 
 
 @dataclass(frozen=True, eq=False)
-class _Smooth:
-    """The quantile as a `Differentiable`."""
+class _Quantile(Smooth):
+    """The quantile as a `Differentiable`, which is smooth except where two samples change ranks."""
 
     plain: _Values
 
@@ -222,13 +222,6 @@ class _Smooth:
             row = order[rank]
             gradient += plain.weights[rank] * (_gradient(plain.inner, inner[row]) * plain.table[row]) @ plain.follows
         return float(values[order] @ plain.weights), gradient
-
-    def active(self, point: Array) -> None:
-        """None, as the quantile is smooth except where two samples change ranks."""
-
-    def components(self, point: Array, which: Array) -> tuple[Array, Array]:
-        """Not supported: a quantile is a single function."""
-        raise AssertionError("a quantile is one function")
 
 
 def _gradient(objective: Differentiable, point: Array) -> Array:

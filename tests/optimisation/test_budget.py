@@ -16,6 +16,7 @@ import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, RideComfort, Road, Spring, break_even
 from inerter import StatisticalLinearisation as Linearisation
 from inerter.errors import OK, DesignError, PerformanceIndexError, StatusKind
+from inerter.optimisation import budget
 from inerter.optimisation.budget import Crossing, is_within_range, with_element
 
 shaft = Spring(1e6, "ks") | Damper(3200.0, "cs")
@@ -171,6 +172,22 @@ def test_an_adaptive_method_keeps_its_roads_throughout(lower, upper):
     wanted = {"parameter": "f", "bounds": (lower, upper)}
     found, expected = (break_even(series(), conventional(), J3, method=m, **wanted) for m in (method, fixed))
     assert found == expected
+
+
+def test_further_roads_are_asked_for_near_the_crossing_only_and_change_no_digit(monkeypatch):
+    method, controls, asked = ExpectedValue(realisations=4, seed=2), ExpectedValue.controls, []
+
+    def counted(self, vehicle, index, count):
+        asked.append(vehicle)
+        return controls(self, vehicle, index, count)
+
+    monkeypatch.setattr(ExpectedValue, "controls", counted)
+    wanted = {"parameter": "f", "method": method, "bounds": (300.0, 3000.0)}
+    found = break_even(series(), conventional(), J3, **wanted)
+    assert 0 < len(asked) < 2 * (found.evaluations - 6)
+    monkeypatch.setattr(budget, "_CERTAIN", math.inf)
+    assert break_even(series(), conventional(), J3, **wanted) == found
+    assert len(asked) > 2 * found.evaluations
 
 
 def test_a_gap_budget():

@@ -129,6 +129,21 @@ def compare(
 
 
 def _compare(first: Vehicle, second: Vehicle, index: IndexLike, method: Method, known: Known) -> Comparison:
+    one, other, method = _on_common_roads(first, second, index, method, known)
+    most = max(one.realisations, other.realisations)
+    return compare_estimates(one, other, [controls_of(design, index, method, most) for design in (first, second)])
+
+
+def compare_samples(first: Vehicle, second: Vehicle, index: IndexLike, method: Method, known: Known) -> Comparison:
+    """The comparison of `compare` by its samples alone, without what friction does to first order on further roads."""
+    one, other, _ = _on_common_roads(first, second, index, method, known)
+    return compare_estimates(one, other)
+
+
+def _on_common_roads(
+    first: Vehicle, second: Vehicle, index: IndexLike, method: Method, known: Known
+) -> tuple[Estimate, Estimate, Method]:
+    """The estimates of both designs on as many and as long roads, and the method with these."""
     designs = first, second
     one, other = (found or evaluate(design, index, method) for found, design in zip(known, designs, strict=True))
     most, longest = max(one.realisations, other.realisations), max(one.period or 0, other.period or 0) or None
@@ -140,7 +155,7 @@ def _compare(first: Vehicle, second: Vehicle, index: IndexLike, method: Method, 
             else evaluate(design, index, method)
             for found, design in ((one, first), (other, second))
         )
-    return compare_estimates(one, other, [controls_of(design, index, method, most) for design in (first, second)])
+    return one, other, method
 
 
 def controls_of(design: Vehicle, index: IndexLike, method: Method, count: int) -> Controls | None:

@@ -13,7 +13,7 @@ import scipy
 
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
 from inerter.formatting import format_alike, format_range, format_share
-from inerter.methods.compare import Comparison, compare
+from inerter.methods.compare import Comparison, compare, compare_samples
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.conditions import values_changed
 from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport, check_request, evaluate
@@ -28,6 +28,7 @@ from inerter.work.running import running_on
 _POINTS = 16  # of the grid between which crossings are sought
 _REACH = 1e3  # ratio of the default bounds to the present value
 _SLOPE = 0.02  # relative step of the slope's difference
+_CERTAIN = 20.0  # standard errors of a difference by samples beyond which no control variate changes its sign
 _WITHIN, _EXACTLY = 1e-5, 1e-11  # relative error of a crossing, of values with and without errors of the method
 _PROMISE = 0.1  # relative error of a break-even value that is ok, sampling apart
 
@@ -147,30 +148,45 @@ def _budget(
     between: tuple[float, float],
 ) -> BreakEven:
     lower, upper = between
+    sampled: dict[float, Comparison] = {}
     known: dict[float, Comparison] = {}
     exact = method.nonlinearity_support is NonlinearitySupport.NEITHER
     fixed = _with_fixed_roads(design, index, method)
     same = None if _has_element(baseline, parameter) else evaluate(baseline, index, fixed)
 
+    def designs_at(logarithm: float) -> tuple[Vehicle, Vehicle]:
+        value = float(np.exp(logarithm))
+        return with_element(design, parameter, value), baseline if same else with_element(baseline, parameter, value)
+
+    def by_samples(logarithm: float) -> Comparison:
+        if logarithm not in sampled:
+            sampled[logarithm] = compare_samples(*designs_at(logarithm), index, fixed, (None, same))
+        return sampled[logarithm]
+
     def difference(logarithm: float) -> float:
         if logarithm not in known:
-            value = float(np.exp(logarithm))
-            other = baseline if same else with_element(baseline, parameter, value)
-            known[logarithm] = compare(with_element(design, parameter, value), other, index, fixed, known=(None, same))
+            found = by_samples(logarithm)
+            known[logarithm] = compare(*designs_at(logarithm), index, fixed, known=(found.first, found.second))
         return known[logarithm].difference.value
 
+    def certain_difference(logarithm: float) -> float:
+        found = by_samples(logarithm).difference
+        return found.value if abs(found.value) > _CERTAIN * found.standard_error else difference(logarithm)
+
     grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()
-    gaps = [difference(at) for at in grid]
+    gaps = [certain_difference(at) for at in grid]
     crossings = tuple(
         _crossing(difference, known, a, b, parameter, exact=exact)
         for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
-        if np.isfinite(left + right) and (left < 0.0) != (right < 0.0)
+        if np.isfinite(left + right)
+        and (left < 0.0) != (right < 0.0)
+        and (difference(a) < 0.0) != (difference(b) < 0.0)
     )
     wanted = "below" if chosen[0].may_vanish else "above"
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     ranges = _ranges(grid, gaps, crossings, between)
-    asked = [known[at].status for at in grid if end is None or is_within_range(at, end, grid[1] - grid[0])]
+    asked = [sampled[at].status for at in grid if end is None or is_within_range(at, end, grid[1] - grid[0])]
     return BreakEven(
         parameter=parameter,
         unit=chosen[0].unit,
@@ -181,7 +197,7 @@ def _budget(
         ranges=ranges,
         bounds=between,
         status=_status(ranges, end, [*asked, *(() if end is None else (end.status,))], parameter, chosen[0].unit),
-        evaluations=len(known),
+        evaluations=len(sampled),
         error_bound=np.nan if end is None else end.error_bound,
     )
 

@@ -65,7 +65,7 @@ def steady_squares(
         jumps = missed_by_samples(integration, outputs, np.sqrt(found))
         return Squares(found, integration.warning, steady, jumps, np.full(len(outputs), np.nan))
     integration, steady = settle(system, table, state, energy=False, most=most)
-    integration.advance(table.time.size - 1)
+    integration.advance(integration.table.time.size - 1)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
         return _nan_squares(len(outputs), integration.status, steady)

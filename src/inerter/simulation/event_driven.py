@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -51,6 +52,8 @@ Matrix = NDArray[np.float64]
 MOST_ELEMENTS = 12
 _SEGMENTS, _PIECES = 200_000, 4000  # at most between two looks at the keyboard: some 10 ms
 _TERMS = 31  # of a series, at most
+_FAST = 1.5  # radians, or times, by which the fastest motion goes on in a step that is divided
+_MOST_PARTS, _MOST_ENTRIES = 32, 4_000_000  # of a step, and of the table of inputs with these: 130 MB
 _KEPT = 16  # machines, such as of one design on many roads
 _MET_BY_ROADS = 2  # elements whose combinations of states random roads visit nearly all
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
@@ -106,6 +109,11 @@ class Integration:
             self.modes = Modes(self.modes.number, *more)
         self.count += 1
         return _add_mode(self, self.modes, self.count - 1, states, self.table.step)
+
+    def ended_on(self, table: InputTable) -> None:
+        """Refer to `table`, of which its own is a refined one, at the end of both: less to keep with a trajectory."""
+        self.table, self.knots = table, knots(table)
+        self.motion.place["segment"] = table.time.size - 1
 
     def go_on_from(self, ending: FinalState) -> None:
         """Begin in the mode in which another integration of the same mechanism ended."""
@@ -273,6 +281,28 @@ def start(
     if after is not None and after.mechanism == system.mechanism:
         integration.go_on_from(after)
     return integration
+
+
+def start_finely(
+    system: PiecewiseSystem, table: InputTable, state: Matrix, outputs: Sequence[str] = (), **others: Any
+) -> Integration:
+    """An integration at its beginning, as `start`, whose whole steps resolve the fastest motion.
+
+    Where the steps of `table` are too long for that, they are divided: a step in which a fast motion might bring a
+    guard to its limit takes a hundred times as long. `table` of the integration is the one with these knots.
+    """
+    begun = start(system, table, state, outputs, **others)
+    parts = 1 if begun.account.wanted else _parts_of_a_step(begun)
+    return begun if parts == 1 else start(system, table.refined(parts), state, outputs, **others)
+
+
+def _parts_of_a_step(begun: Integration) -> int:
+    """Number of parts of a step in each of which the fastest motion known can be resolved; 1 if they were too many."""
+    if begun.count == 0 and begun.system.nonlinear:
+        begun.build(np.ones(len(begun.system.nonlinear), dtype=np.int64))  # all slip, or touch
+    fastest = begun.table.step / float(begun.modes.reach[: begun.count].min(initial=np.inf))
+    parts = math.ceil(fastest) if fastest > _FAST else 1
+    return parts if parts <= _MOST_PARTS and parts * begun.table.value.size <= _MOST_ENTRIES else 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -57,12 +57,59 @@ class InputTable:
     @cached_property
     def repeating(self) -> InputTable:
         """Table of one period preceded by its own end, so that inputs may jump where the period starts again."""
-        before, slope = self.value_before.copy(), self.slope_before.copy()
-        before[0], slope[0] = before[-1], slope[-1]
+        before, slope = _ending_first(self.value_before), _ending_first(self.slope_before)
         special = self.special
         if not self.jumps and special[0] != 0 and not np.array_equal(before[0], self.value[0]):
             special = np.concatenate([[0], special])
         return replace(self, value_before=before, slope_before=slope, special=special)
+
+    def refined(self, parts: int) -> InputTable:
+        """The same motion with `parts` segments in place of each one, whose inputs go along the same cubics."""
+        if parts == 1:
+            return self
+        time = np.append((self.time[:-1, None] + np.diff(self.time)[:, None] * np.arange(parts) / parts), self.time[-1])
+        value, slope = (_within_segments(self, parts, derivative) for derivative in (0, 1))
+        slot = np.full(time.size, -1, np.int64)
+        slot[::parts] = self.slot
+        return replace(
+            self,
+            step=self.step / parts,
+            time=time,
+            value=value,
+            slope=slope,
+            value_before=_from_the_left_too(self.value_before, self.value, value, parts),
+            slope_before=_from_the_left_too(self.slope_before, self.slope, slope, parts),
+            special=np.append((self.special[:-1, None] * parts + np.arange(parts)).ravel(), time.size + 1),
+            slot=slot,
+        )
+
+
+def _within_segments(table: InputTable, parts: int, derivative: int) -> Matrix:
+    """Values, or slopes, of all inputs from the right at the ends of `parts` equal pieces of every segment."""
+    length, s = np.diff(table.time)[:, None, None], (np.arange(parts) / parts)[:, None]
+    first, rise = table.value[:-1, None], (table.value_before[1:] - table.value[:-1])[:, None]
+    begin, end = length * table.slope[:-1, None], length * table.slope_before[1:, None]
+    bent, turned = 3.0 * rise - 2.0 * begin - end, begin + end - 2.0 * rise
+    if derivative == 0:
+        found = first + s * (begin + s * (bent + s * turned))
+    else:
+        found = (begin + s * (2.0 * bent + s * 3.0 * turned)) / length
+    last = (table.value, table.slope)[derivative][-1:]
+    return np.concatenate([found.reshape(-1, last.shape[1]), last])
+
+
+def _from_the_left_too(before: Matrix, after: Matrix, found: Matrix, parts: int) -> Matrix:
+    """Values from the left at the knots of a refined table; those from the right, `found`, where no input breaks."""
+    if before is after:
+        return found
+    left = found.copy()
+    left[::parts] = before
+    return left
+
+
+def _ending_first(rows: Matrix) -> Matrix:
+    """The rows with the last one as the first, too; the same array if it is."""
+    return rows if np.array_equal(rows[0], rows[-1]) else np.concatenate([rows[-1:], rows[1:]])
 
 
 class RunInputs(TypedDict, total=False):
@@ -216,14 +263,12 @@ def tabulate(
         if broken[i].size:
             before.append((i, *_from_the_left(signal, delay, broken[i], time, step)))
     value_before, slope_before = value, slope
-    if before:
-        value_before, slope_before = value.copy(), slope.copy()
-        for i, at, left, left_slope in before:
-            kinks = np.abs(left_slope - slope[at, i]) > 1e-9 * float(np.abs(slope[:, i]).max())
-            slope_before[at[kinks], i] = left_slope[kinks]
-            leaps = np.abs(left - value[at, i]) > 1e-12 * max(float(np.abs(value[:, i]).max()), 1e-300)
-            value_before[at[leaps], i] = left[leaps]
-            jumped[at[leaps]] = True
+    for i, at, left, left_slope in before:
+        kinks = np.abs(left_slope - slope[at, i]) > 1e-9 * float(np.abs(slope[:, i]).max())
+        slope_before = _replaced(slope_before, at[kinks], i, left_slope[kinks])
+        leaps = np.abs(left - value[at, i]) > 1e-12 * max(float(np.abs(value[:, i]).max()), 1e-300)
+        value_before = _replaced(value_before, at[leaps], i, left[leaps])
+        jumped[at[leaps]] = True
     return InputTable(
         step=step,
         time=time,
@@ -237,6 +282,14 @@ def tabulate(
         moving=tuple(signal is not None for signal in signals),
         jumps=bool(jumped.any()),
     )
+
+
+def _replaced(rows: Matrix, at: NDArray[np.intp], column: int, values: Matrix) -> Matrix:
+    """A copy of the rows with these values in one column; the rows themselves if there are none."""
+    if at.size:
+        rows = rows.copy()
+        rows[at, column] = values
+    return rows
 
 
 def _between(broken: Matrix, start: float, step: float) -> Matrix:

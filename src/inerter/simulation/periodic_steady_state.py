@@ -52,10 +52,11 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
     end of a long one) is gone through to settle, then others until the state repeats. How fast it does tells what is
     left of a motion (see `left_of_motion`). `table` is one period that is repeated.
     """
-    last = table.time.size - 1
-    first = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
-    state = initial_state(system, table.value_before[first], "rest")
-    run = event_driven.start(system, table, state, keep=False)
+    at = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
+    state, begin = initial_state(system, table.value_before[at], "rest"), table.time[at]
+    run = event_driven.start_finely(system, table, state, keep=False)
+    table = run.table
+    last, first = table.time.size - 1, int(np.searchsorted(table.time, begin))
     run.motion.place["segment"] = first
     run.advance(last)
     mismatch, settled = np.inf, 0.0
@@ -75,8 +76,9 @@ def settle(
     system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool, most: int = _PERIODS
 ) -> tuple[Integration, PeriodicState]:
     """Repeat one period until the state repeats, at most `most` times; an integration at the start of the next one."""
-    again = table.repeating
-    quick, settled = _repeat_period(event_driven.start(system, table, state, keep=False), again, _REPEATS, most)
+    begun = event_driven.start_finely(system, table, state, keep=False)
+    again = begun.table.repeating
+    quick, settled = _repeat_period(begun, again, _REPEATS, most)
     recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
     recorded.status = quick.status
     if quick.status.ok and settled.mismatch > _ENOUGH:
@@ -97,8 +99,8 @@ def mean_squares(
     It repeats if it changes by less than `repeats` of its size. Goes through `most` periods at most. What the
     integration's `status` or `warning` say holds for the squares.
     """
-    begun = event_driven.start(system, table, state, outputs, keep=False)
-    integration, settled = _repeat_period(begun, table.repeating, repeats, most)
+    begun = event_driven.start_finely(system, table, state, outputs, keep=False)
+    integration, settled = _repeat_period(begun, begun.table.repeating, repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _steady_state_warning(settled)
     return integration.record.squares / (table.samples - 1), integration, settled

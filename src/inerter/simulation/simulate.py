@@ -115,15 +115,17 @@ def simulate(
     joined = isinstance(initial, Trajectory)
     table = tabulate_once(signals, delays, length, step, int(every), plan.begin, joined)
     state, steady = initial_state(system, table.value[0], initial, table.slope[0]), None
-    integration = event_driven.start(system, table, state, account=energy, after=ending_of(initial))
+    integration = event_driven.start_finely(system, table, state, account=energy, after=ending_of(initial))
     if plan.is_periodic:
         integration, steady = settle(system, table, state, energy)
-    segments = table.time.size - 1
+    segments = integration.table.time.size - 1
     reports = 1 if progress is None else _REPORTS
     for part in range(1, reports + 1):
         integration.advance(segments * part // reports)
         if progress is not None:
             progress(integration.segment / segments)
+    if integration.status.ok:
+        integration.ended_on(table.repeating if plan.is_periodic else table)
     label = "; ".join(dict.fromkeys(s.label for s in signals if s is not None))
     return trajectory_of(integration, steady, label)
 

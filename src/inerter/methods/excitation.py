@@ -20,7 +20,7 @@ from inerter.validation import check_positive
 
 Array = NDArray[np.float64]
 _COARSEST = 5e-4  # [s] longest step for an input without steps of its own
-_SMALL = 100_000  # entries of a table that is kept for the next design: a few MB
+_SMALL, _LARGE = 100_000, 1_000_000  # samples of all inputs whose table is kept for the next design: a few MB, 60 MB
 
 
 @dataclass(frozen=True)
@@ -145,8 +145,9 @@ class ExcitedInputs:
 
     def realisation(self, seed: int) -> tuple[InputTable, Array]:
         """Input table over one period of a realisation, and its `power`."""
-        small = self.excitation.samples * len(self.delays) <= _SMALL
-        return _kept(self, seed) if small else _tabulate_realisation(self, seed)
+        size = self.excitation.samples * len(self.delays)
+        tabulate_it = _kept if size <= _SMALL else _kept_large if size <= _LARGE else _tabulate_realisation
+        return tabulate_it(self, seed)
 
     def power(self, samples: Array) -> Array:
         """Squared sizes of the excited harmonics in the samples of a period, both ends included."""
@@ -164,7 +165,7 @@ def _tabulate_realisation(drive: ExcitedInputs, seed: int) -> tuple[InputTable, 
     return (table.repeating if drive.excitation.is_held else table), power
 
 
-_kept = lru_cache(maxsize=32)(_tabulate_realisation)
+_kept, _kept_large = (lru_cache(maxsize=most)(_tabulate_realisation) for most in (32, 4))
 
 
 def _check_rms(rms: object) -> None:

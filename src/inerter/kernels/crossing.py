@@ -14,6 +14,7 @@ from inerter.kernels.locking import can_be_in
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
 ROUNDING = 1e-13  # relative to the largest state so far
 MET = 1e-9  # the same where a guard has just been met
+_NEGLIGIBLE = 1e-19  # last coefficients of a guard relative to its change: far below its rounding
 
 
 @part(borrowing=True, inside=True)
@@ -72,6 +73,8 @@ def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
     c, g, swing = run.room.guard, run.room.distance, _guard_polynomial(run, row, count)
+    while count > ORDERS and abs(c[count - 1]) <= _NEGLIGIBLE * swing:
+        count -= 1
     best = 2.0
     for at in range(2):
         side, limit = 2 * at - 1, limits[at]

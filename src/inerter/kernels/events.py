@@ -43,16 +43,16 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
     refused: Any = NONE
     while place.segment < stop:
         k = place.segment
-        length = knots.time[k + 1] - knots.time[k]
-        if abs(length - h) < 1e-9 * h:
-            length = h
+        while knots.special[place.special] < k:
+            place.special += 1
+        length = h
+        if knots.special[place.special] == k:
+            length = _length_of(knots, k, h)
         if place.mode < 0:
             code = _find_first_mode(run, knots, record, length)
             if code != DONE:
                 return code
         knot_numbers(knots.value, knots.slope, knots.value_before, knots.slope_before, k, length, numbers)
-        while knots.special[place.special] < k:
-            place.special += 1
         if k != refused and not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
             m = place.mode
             lines = MarchLines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
@@ -69,6 +69,13 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
             return code
         _finish_segment(run, knots, record, length)
     return DONE
+
+
+@part(borrowing=True, inside=True)
+def _length_of(knots: Knots, k: int, h: float) -> float:
+    """Length of a special segment: the step h, if it is special for another reason."""
+    length = knots.time[k + 1] - knots.time[k]
+    return h if abs(length - h) < 1e-9 * h else float(length)
 
 
 @part(borrowing=True, inside=True)

@@ -139,10 +139,16 @@ def slope_at(c: Array, count: int, s: float) -> float:
     return total
 
 
-@part("float64(float64[::1], int64, float64, float64)", borrowing=True)
-def polish(c: Array, count: int, a: float, b: float) -> float:
-    """The root in [a, b] of a polynomial that is positive at a and not at b: Newton's steps, or else halving."""
-    s = 0.5 * (a + b)
+@part("float64(float64[::1], int64, float64, float64, float64, float64, float64)", borrowing=True)
+def polish(c: Array, count: int, a: float, b: float, at_a: float, at_b: float, bend: float) -> float:
+    """The root in [a, b] of a polynomial that is positive at a and not at b: Newton's steps, or else halving.
+
+    They begin where the line through both ends is zero, and end with the step after which the second derivative, at
+    most `bend`, leaves no more than rounding.
+    """
+    s = a + (b - a) * at_a / (at_a - at_b)
+    if not (a < s < b):
+        s = 0.5 * (a + b)
     for _ in range(80):
         value = value_at(c, count, s)
         if value > 0.0:
@@ -155,6 +161,8 @@ def polish(c: Array, count: int, a: float, b: float) -> float:
             return after
         if not (a < after < b):
             after = 0.5 * (a + b)
+        elif bend * (after - s) ** 2 <= -CLOSE * slope * after:
+            return after
         if b - a <= CLOSE * b:
             return after
         s = after
@@ -185,7 +193,7 @@ def first_root(c: Array, count: int, ends: Array) -> float:
             a, at_a = b, at_b
             depth -= 1
         elif at_b <= 0.0 and (slope_at(c, count, 0.5 * (a + b)) < -0.5 * bend * width or width < 1e-15):
-            return polish(c, count, a, b)
+            return polish(c, count, a, b, at_a, at_b, bend)
         elif depth == ends.shape[0]:
             a, at_a = b, at_b
             depth -= 1

@@ -16,6 +16,7 @@ from inerter.kernels.decorators import function_at, kernel, part
 from inerter.kernels.lanes import GROUP, as_numbers, in_groups, larger, multiply_add, smaller
 
 BLOCK = 16  # steps that are judged together
+_FIRST = 4  # the same in the first block: where one alarm follows another, all steps made beyond it are in vain
 _EXTREMES = 7  # rows of `Path.extremes`, see there
 _STATES, _INPUTS, _BENDS, _LEAST, _MOST, _OF_BLOCK, _OF_STEP = range(_EXTREMES)
 
@@ -268,9 +269,10 @@ def march_steps(
     own = max((n * groups + shape.rows - 1) // max(shape.rows, 1), 0)  # groups with states
     for i in range(n):
         path.rows[0, i] = lines.state[i]
-    k, safe, count = span.first, 0, 0
+    k, safe, count, most = span.first, 0, 0, BLOCK if shape.elements == 0 else _FIRST
     while k < span.stop and safe == count:
-        count = min(BLOCK, span.stop - k)
+        count = min(most, span.stop - k)
+        most = min(2 * most, BLOCK)
         slots = knots.slot[k : k + count + 1]
         fill_inputs(knots, k, span.step, shape, numbers, path.inputs, count)
         if shape.jumps:

@@ -180,12 +180,13 @@ def check_contact_state(run: Run, m: int, length: float, who: int) -> int:
     first: Any = np.int64(0)
     for group in range(3):
         last = first + run.modes.conditions[m, group]
-        if _is_broken(run, m, first, last):
-            verdict = _verdict_on_conditions(run, m, first, last, group)
-            if verdict != ACCEPTED:
-                return verdict
-        for j in range(sizes.states):
-            room.guess[j] += _condition_impulse(run.modes.reaction[m], j, room.residual, first, last)
+        if last > first:
+            if _is_broken(run, m, first, last):
+                verdict = _verdict_on_conditions(run, m, first, last, group)
+                if verdict != ACCEPTED:
+                    return verdict
+            for j in range(sizes.states):
+                room.guess[j] += _condition_impulse(run.modes.reaction[m], j, room.residual, first, last)
         first = last
     return _check_guards(run, m, d, who)
 

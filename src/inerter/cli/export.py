@@ -9,13 +9,18 @@ from typing import Any
 from inerter.cli.interrupts import interruptible
 from inerter.cli.quantity_options import positive_option
 from inerter.cli.streams import say
+from inerter.errors import ExportError
 from inerter.exports.export import check_suffix, export_contents
+from inerter.exports.kind import ExportKind
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import ExportSpec
 from inerter.files.common.folder import check_single, single
+from inerter.files.common.suggest import nearest
 from inerter.files.study.chosen_design import CHOOSE_ONE, WITHOUT_CONDITIONS, chosen_design
+from inerter.units import quote_value
 
 _BY = "export"
+_OPENED_BY = {"simulink": "fmu", "octave": "matlab", "openmodelica": "modelica", "excel": "csv", "tikz": "latex"}
 
 
 def export(
@@ -32,7 +37,7 @@ def export(
     force: bool,
 ) -> None:
     """Export a design of a study file or of a folder of results to a file, with `options` of `ExportSpec`."""
-    kind, part = EXPORTS[to], options["part"]
+    kind, part = _kind(to), options["part"]
     if output is not None:
         check_suffix(kind, output)
         check_single(output, by=_BY, inputs=(), force=force)
@@ -61,3 +66,13 @@ def export(
     say(f"{kind.description}: {path}")
     if design.study.conditions and condition is None:
         say(f"{WITHOUT_CONDITIONS}; {CHOOSE_ONE}")
+
+
+def _kind(name: str) -> ExportKind:
+    """The kind of export; raises `ExportError` for an unknown one, with those that are written to files."""
+    if name in EXPORTS:
+        return EXPORTS[name]
+    files = [key for key, kind in EXPORTS.items() if kind.is_file]
+    opened = _OPENED_BY.get(name.lower())
+    hint = nearest(name, files) if opened is None else f" Try: --to {opened}"
+    raise ExportError(f"Unknown kind of export {quote_value(name)}; available: {', '.join(files)}.{hint}")

@@ -50,9 +50,6 @@ from inerter.indices.definition import Combination as Combination
 from inerter.indices.definition import IndexDefinition as IndexDefinition
 from inerter.indices.definition import on_road as on_road
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient as DynamicLoadCoefficient
-from inerter.indices.element_force import ElementForce as ElementForce
-from inerter.indices.element_stroke import ElementStroke as ElementStroke
-from inerter.indices.element_velocity import ElementVelocity as ElementVelocity
 from inerter.indices.excitation import Excitation as Excitation
 from inerter.indices.excitation import FilteredExcitation as FilteredExcitation
 from inerter.indices.excitation import GroundAcceleration as GroundAcceleration
@@ -61,6 +58,9 @@ from inerter.indices.excitation import WhiteForce as WhiteForce
 from inerter.indices.iso2631 import iso2631_weighting as iso2631_weighting
 from inerter.indices.load_carrying import LoadCarrying as LoadCarrying
 from inerter.indices.measured_road import measured_road as measured_road
+from inerter.indices.of_element import ElementForce as ElementForce
+from inerter.indices.of_element import ElementStroke as ElementStroke
+from inerter.indices.of_element import ElementVelocity as ElementVelocity
 from inerter.indices.peak_response import PeakResponse as PeakResponse
 from inerter.indices.random_response import RandomResponse as RandomResponse
 from inerter.indices.registry import INDICES as INDICES

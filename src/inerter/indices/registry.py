@@ -10,10 +10,8 @@ from inerter.errors import PerformanceIndexError, RegistryError
 from inerter.field_metadata import Field, TextChoice, TypedField, choices_of, fields_of, typed_fields_of
 from inerter.indices.definition import Index
 from inerter.indices.dynamic_load_coefficient import DynamicLoadCoefficient
-from inerter.indices.element_force import ElementForce
-from inerter.indices.element_stroke import ElementStroke
-from inerter.indices.element_velocity import ElementVelocity
 from inerter.indices.load_carrying import LoadCarrying
+from inerter.indices.of_element import ElementForce, ElementStroke, ElementVelocity
 from inerter.indices.peak_response import PeakResponse
 from inerter.indices.random_response import RandomResponse
 from inerter.indices.ride_comfort import RideComfort

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import io
 import os
@@ -9,7 +10,7 @@ import secrets
 import shutil
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
@@ -145,6 +146,21 @@ def export(path: str | os.PathLike[str], kind: type[InerterError], *, overwrite:
     except OSError as error:
         chosen = WorkError if is_disk_failure(error) else kind
         raise chosen(f"Cannot write {os.fsdecode(path)!r}: {error.strerror or error}.") from error
+
+
+def export_csv(
+    path: str | os.PathLike[str],
+    kind: type[InerterError],
+    header: Sequence[str],
+    rows: Iterable[Sequence[float | str]],
+    *,
+    overwrite: bool = False,
+) -> None:
+    """Write a table whose numbers read back to the last bit; see `export`."""
+    with export(path, kind, overwrite=overwrite) as draft, draft.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(header)
+        writer.writerows(rows)
 
 
 def is_disk_failure(error: OSError) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.atomic_io import export
+from inerter.atomic_io import export_csv
 from inerter.errors import OK, RecordError, Status
 from inerter.records.record import Record
 
@@ -104,14 +103,9 @@ class Response:
         Raises `RecordError` if the file cannot be written, or exists and `overwrite` is false.
         """
         columns = self.columns()
-        with (
-            export(path, RecordError, overwrite=overwrite) as draft,
-            draft.open("w", newline="", encoding="utf-8") as file,
-        ):
-            writer = csv.writer(file)
-            writer.writerow(["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)])
-            rows = np.column_stack([self.frequency, *columns.values()]).tolist()
-            writer.writerows(map(repr, row) for row in rows)
+        header = ["frequency [Hz]", *(f"{name} [{_COLUMNS[name][0]}]" for name in columns)]
+        rows = np.column_stack([self.frequency, *columns.values()]).tolist()
+        export_csv(path, RecordError, header, rows, overwrite=overwrite)
 
 
 def response_from_values(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +12,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from inerter.atomic_io import export
+from inerter.atomic_io import export, export_csv
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import MechanismError, SimulationError, Status
 from inerter.notebook import shown_by
@@ -243,11 +242,15 @@ class Trajectory:
             found.append((since, float(self.time[-1])))
         return found
 
+    def _chosen(self, names: Sequence[str] | None) -> list[str]:
+        """The named outputs, or all."""
+        return list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
+
     def to_xarray(self, names: Sequence[str] | None = None) -> xarray.Dataset:
         """The named outputs, or all, as a dataset over `time` with units and long names."""
         import xarray  # noqa: PLC0415 - heavy
 
-        chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
+        chosen = self._chosen(names)
         data = {
             name: ("time", self[name], {"units": self.outputs[name].unit, "long_name": self.outputs[name].title})
             for name in chosen
@@ -260,35 +263,26 @@ class Trajectory:
 
         Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
-        chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
-        columns = [self.time, *(self[name] for name in chosen)]
-        with (
-            export(path, SimulationError, overwrite=overwrite) as draft,
-            draft.open("w", newline="", encoding="utf-8") as file,
-        ):
-            writer = csv.writer(file)
-            writer.writerow(["time [s]", *(f"{name} [{self.outputs[name].unit}]" for name in chosen)])
-            writer.writerows(map(repr, row) for row in np.column_stack(columns).tolist())
+        chosen = self._chosen(names)
+        header = ["time [s]", *(f"{name} [{self.outputs[name].unit}]" for name in chosen)]
+        rows = np.column_stack([self.time, *(self[name] for name in chosen)]).tolist()
+        export_csv(path, SimulationError, header, rows, overwrite=overwrite)
 
     def events_to_csv(self, path: str | Path, *, overwrite: bool = False) -> None:
         """Write the table of events.
 
         Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
-        with (
-            export(path, SimulationError, overwrite=overwrite) as draft,
-            draft.open("w", newline="", encoding="utf-8") as file,
-        ):
-            writer = csv.writer(file)
-            writer.writerow(["time [s]", "element", "from", "to"])
-            writer.writerows([repr(e.time), e.element, e.before, e.after] for e in self.events)
+        header = ["time [s]", "element", "from", "to"]
+        rows = ((event.time, event.element, event.before, event.after) for event in self.events)
+        export_csv(path, SimulationError, header, rows, overwrite=overwrite)
 
     def to_mat(self, path: str | Path, names: Sequence[str] | None = None, *, overwrite: bool = False) -> None:
         """Write a MATLAB 5 file with `time`, the named outputs, or all, a struct `units`, and the events.
 
         Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
-        chosen = list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
+        chosen = self._chosen(names)
         data: dict[str, Any] = {name[:31]: self[name] for name in chosen}
         data["time"] = self.time
         data["units"] = {name[:31]: self.outputs[name].unit for name in chosen}

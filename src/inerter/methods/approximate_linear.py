@@ -33,7 +33,7 @@ from inerter.methods.linear import CONVENTIONS, check_conventions, linear_proble
 from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.multisine_lines import SampledObjective
-from inerter.methods.objective import Objective
+from inerter.methods.objective import Objective, count_of
 from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
@@ -158,7 +158,7 @@ class ApproximateLinear(FormerMethodNames):
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values; nan where an estimate is not ok."""
-        count = next(iter(points.values())).size if points else 1
+        count = count_of(points)
         result = np.full((count, len(indices)), np.nan)
         for i in range(count):
             design = vehicle.with_values({name: float(column[i]) for name, column in points.items()})

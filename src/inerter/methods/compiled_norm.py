@@ -24,12 +24,13 @@ from inerter.kernels import modal as modal_kernels
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.modal_norm import modal_arguments, stacks_of
+from inerter.methods.objective import count_of, rows_of
 from inerter.networks.elements import middle
 from inerter.norms.delay import pade
 from inerter.norms.exact import h2_exactly
 from inerter.norms.h2 import drift_covariance
 from inerter.signals.coherence import Excess
-from inerter.systems.descriptor import Descriptor, close
+from inerter.systems.descriptor import close
 from inerter.systems.linear import LinearSystem
 from inerter.vehicle.mechanism import Mechanism
 
@@ -452,20 +453,18 @@ def evaluate_problems(
         alone = definition.is_peak
         key = ("peak", i) if alone else (definition.excitation, _shared_filter(problem.definition))
         groups.setdefault(key, []).append(i)
-    result: Array = np.empty((next(iter(points.values())).size if points else 1, len(definitions)))
+    result: Array = np.empty((count_of(points), len(definitions)))
     for members in groups.values():
         if definitions[members[0]].is_peak:
             compiled = CompiledNorm(problems[members[0]])
-            result[:, members[0]] = compiled.evaluate_points(
-                rows_of(compiled.problem.descriptor, points, result.shape[0])
-            )
+            result[:, members[0]] = compiled.evaluate_points(rows_of(points, compiled.problem.descriptor.free))
             continue
         asked = [problems[i].definition for i in members]
         found = {o.output: (o, f) for one in asked for o, f in zip(one.outputs, one.filters, strict=True)}
         outputs, filters = (tuple(part) for part in zip(*found.values(), strict=True))
         joint = linear_problem(mechanism, replace(asked[0], outputs=outputs, filter=filters), conventions)
         compiled = CompiledNorm(joint)
-        norms = compiled.output_norms(rows_of(joint.descriptor, points, result.shape[0]))
+        norms = compiled.output_norms(rows_of(points, joint.descriptor.free))
         places = [o.output for o in outputs]
         for i in members:
             columns = [places.index(o.output) for o in definitions[i].outputs]
@@ -478,9 +477,3 @@ def _shared_filter(definition: IndexDefinition) -> Any:
     """The filter of all outputs; which outputs have which, where they differ."""
     several = set(definition.filters)
     return several.pop() if len(several) == 1 else (definition.outputs, definition.filters)
-
-
-def rows_of(descriptor: Descriptor, points: Mapping[str, Array], count: int) -> Array:
-    """Values (designs, free values) in the order of the descriptor."""
-    columns = [points[name] for name in descriptor.free]
-    return np.ascontiguousarray(np.column_stack(columns)) if columns else np.empty((count, 0))

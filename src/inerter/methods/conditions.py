@@ -19,7 +19,7 @@ from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.methods.composite_index import IndexLike, Ties, estimate_of, estimates_of, is_index, objective_of
 from inerter.methods.error_bounds import of_weighted_sum, of_worst
 from inerter.methods.method import Estimate, Method, constituents_of
-from inerter.methods.objective import Objective
+from inerter.methods.objective import Objective, count_of
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
 from inerter.validation import is_number
@@ -184,7 +184,7 @@ class OverConditions(OfIndex):
         for case, index in self.cases(vehicle):
             own = {name: points[name] for name in case.free_values()}
             found = estimates_of(case, [index], method, own)[:, 0]
-            columns.append(np.broadcast_to(found, (next(iter(points.values())).size if points else 1,)))
+            columns.append(np.broadcast_to(found, (count_of(points),)))
         return self.combine(np.array(columns))
 
     def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:

@@ -24,7 +24,7 @@ from inerter.methods.linear import (
 )
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.multisine_lines import SampledObjective
-from inerter.methods.objective import Objective
+from inerter.methods.objective import Objective, rows_of
 from inerter.methods.out_of_band import PROMISE, mean_on_roads, on_roads
 from inerter.methods.perturbation import first_order
 from inerter.methods.realisations import random_excitation, realisation_seeds
@@ -122,7 +122,7 @@ class ExpectedValue(FormerMethodNames):
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values; nan where the status is not ok."""
         names = list(points)
-        columns = np.column_stack([points[name] for name in names]) if names else np.zeros((1, 0))
+        columns = rows_of(points, names)
         result = np.full((columns.shape[0], len(indices)), np.nan)
         with one_blas_thread(), threads(self.jobs) as pool:
             for i, row in enumerate(columns.tolist()):

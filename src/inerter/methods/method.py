@@ -25,7 +25,7 @@ from inerter.methods.composite_index import (
     is_index,
     without_tied_values,
 )
-from inerter.methods.objective import Objective
+from inerter.methods.objective import Objective, rows_of
 from inerter.norms.hinf import GainPeak
 from inerter.notebook import shown_by
 from inerter.systems.graph import full_graph
@@ -249,7 +249,7 @@ def evaluate_many(
         return estimates_of(vehicle, several, method, points)
     with running_on(executor) as pool:
         _prepare(pool, vehicle, several, method)
-        rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
+        rows = rows_of(points, points)
         parts = np.array_split(rows, -(-len(rows) // _TOGETHER)) if len(rows) else [rows]
         return np.concatenate(map_items(partial(_estimate_rows, vehicle, several, tuple(points), method), parts))
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError
 from inerter.indices.definition import Index, IndexDefinition
-from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of, rows_of
+from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.network_norm import network_kernel, norms_over_strut
-from inerter.methods.objective import Differentiable
+from inerter.methods.objective import Differentiable, count_of, rows_of
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -60,7 +60,7 @@ class Norm(FormerMethodNames):
         """The indices (designs, indices) at many values of the free values, compiled."""
         mechanism = vehicle.mechanism()
         conventions = CONVENTIONS[self.conventions]
-        count = next(iter(points.values())).size if points else 1
+        count = count_of(points)
         result: Array = np.full((len(indices), count), np.nan)
         if is_exact_norm(self):  # for one design as for many: shared work gives the same digits
             for row, index in enumerate(indices):
@@ -82,7 +82,7 @@ class Norm(FormerMethodNames):
         """
         mechanism = vehicle.mechanism()
         problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS[self.conventions])
-        rows = rows_of(problem.descriptor, points, next(iter(points.values())).size if points else 1)
+        rows = rows_of(points, problem.descriptor.free)
         return float(np.mean(CompiledNorm(problem).is_unsure(rows)))
 
     def objective(self, vehicle: Vehicle, index: Index) -> Differentiable:

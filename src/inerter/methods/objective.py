@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -48,6 +49,17 @@ class Smooth:
     def components(self, point: Array, which: Array) -> tuple[Array, Array]:
         """Never asked for, as none is active."""
         raise NotImplementedError
+
+
+def count_of(points: Mapping[str, Array]) -> int:
+    """Number of designs of which `points` are the free values: one if there are none."""
+    return next(iter(points.values())).size if points else 1
+
+
+def rows_of(points: Mapping[str, Array], names: Iterable[str]) -> Array:
+    """Free values (designs, values) in the order of `names`."""
+    columns = [points[name] for name in names]
+    return np.ascontiguousarray(np.column_stack(columns)) if columns else np.empty((count_of(points), 0))
 
 
 def snap_to_bounds(points: Array, lower: Array, upper: Array) -> Array:

@@ -12,7 +12,7 @@ from inerter.errors import ErrorSource, PerformanceIndexError
 from inerter.indices.definition import Index
 from inerter.methods.error_bounds import ROUNDING
 from inerter.methods.method import Estimate, Method
-from inerter.methods.objective import Smooth
+from inerter.methods.objective import Smooth, rows_of
 from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Friction, Network, Parallel
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import UpsideDown, expand_elements, linearise
@@ -54,8 +54,7 @@ class StaticStiffness:
     def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """The values (designs,) at many values of the free values."""
         network = self._network(vehicle.mechanism())
-        rows = np.column_stack(list(points.values())) if points else np.zeros((1, 0))
-        return _Stiffness(network, tuple(points)).values(rows)
+        return _Stiffness(network, tuple(points)).values(rows_of(points, points))
 
     def as_objective(self, vehicle: Vehicle, method: Method) -> _Stiffness:
         """The stiffness as a function of the free values, with its gradient."""

@@ -18,7 +18,7 @@ from inerter.indices.definition import Index, OfIndex
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.conditions import OverConditions, values_changed
 from inerter.methods.method import Estimate, Method, constituents_of
-from inerter.methods.objective import Differentiable, Objective, Smooth
+from inerter.methods.objective import Differentiable, Objective, Smooth, rows_of
 from inerter.optimisation.limits import Limit
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.uncertainty.distributions import (
@@ -133,8 +133,7 @@ class Quantile(OfIndex):
 
     def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
         """Quantiles (designs,) at many values of the free values, nan where unknown."""
-        rows = np.column_stack([points[name] for name in vehicle.free_values()]) if points else np.zeros((1, 0))
-        found = self.as_objective(vehicle, method).values(rows)
+        found = self.as_objective(vehicle, method).values(rows_of(points, vehicle.free_values()))
         return np.where(np.isfinite(found), found, np.nan)
 
     def as_objective(self, vehicle: Vehicle, method: Method) -> Objective:

@@ -70,8 +70,20 @@ def test_about_tells_the_rows(client: TestClient) -> None:
 
 
 def test_examples_are_studies(client: TestClient) -> None:
-    names = [row["name"] for row in client.get("/api/examples").json()["examples"]]
+    """In the order of their questions, of which each heads one card, and one for each vehicle to begin with."""
+    found = client.get("/api/examples").json()
+    names = [row["name"] for row in found["examples"]]
     assert {"quarter-car", "half-car", "ball_screw", "stiffness-sweep"} <= set(names)
+    headings = [row["heading"] for row in found["examples"]]
+    assert len(set(headings)) == len(headings)
+    assert headings.index("Which strut for a quarter car?") == 0
+    assert found["examples"][names.index("limits")]["heading"] == "Quarter car: the best ride within limits"
+    for row in found["examples"]:
+        assert ask(client, "study/read", study=row["study"]) == {"study": row["study"], "kind": "run", "problems": []}
+        assert set(row["kinds"]) == set(row["study"]["elements"])
+    begins = {row["title"]: row["name"] for row in found["vehicles"]}
+    assert begins["Half car"] == "half-car"
+    assert all(name in names for name in begins.values())
     told = client.get("/api/examples/quarter-car").json()
     assert told["text"] == (EXAMPLES / "quarter-car.toml").read_text(encoding="utf-8")
     assert told["problems"] == []

@@ -58,8 +58,11 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 def without_digests(result: dict[str, Any]) -> dict[str, Any]:
     """Results without title and without what a page keeps of the problem that each design solves."""
-    designs = [{key: value for key, value in one.items() if key != "problem_digests"} for one in result["designs"]]
+    own = ("problem_digests", "texts")
+    designs = [{key: value for key, value in one.items() if key not in own} for one in result["designs"]]
     assert all(one["problem_digests"] for one in result["designs"])
+    for one in result["designs"]:
+        assert {name: float(text.partition(" ")[0]) for name, text in one["texts"].items()} == one["parameters"]
     return {**result, "title": "", "designs": designs}
 
 

@@ -4,7 +4,7 @@
 import { partAt } from "./network/algebra.js";
 import { entryAt, isRange, own, textOf } from "./state/document.js";
 
-/** @import { State } from "./state/store.js" */
+/** @import { State, Store } from "./state/store.js" */
 /** @import { Tree } from "./network/algebra.js" */
 /** A number that the document gives: the keys to its text, its place in sweeps, its SI unit, and its name where it may
  * be free. @typedef {{path: string[], place: string, words: string, sentence: string, unit: string,
@@ -14,6 +14,9 @@ import { entryAt, isRange, own, textOf } from "./state/document.js";
 /** @typedef {{networks: NetworkRow[], layouts: {[layout: string]: {elements: string[], free: string[],
  * free_networks: string[]}},
  * elements: {[name: string]: {kind: string | null, layouts: string[]}}, numbers: NumberRow[]}} Parts */
+
+/** @typedef {{name: string, words?: string, sees: "neither" | "friction" | "both", searches: boolean,
+ * averages: boolean}} Method */
 
 /** @type {Parts} */
 const NOTHING = { networks: [], layouts: {}, elements: {}, numbers: [] };
@@ -89,9 +92,38 @@ export const unchosenIn = (state, { layout, values }) =>
 /** The row of an element's kind. @param {State} state @param {string} name @returns {any} */
 export const kindOf = (state, name) => kindNamed(state, at(partsOf(state).elements, name)?.kind);
 
-/** The row of a kind. @param {State} state @param {string | null | undefined} known @returns {any} */
+/** The row of a kind. @param {Pick<State, "about">} state @param {string | null | undefined} known @returns {any} */
 export const kindNamed = (state, known) =>
   (known ? state.about?.elements.find((/** @type {any} */ { key }) => key === known) : null);
 
 /** The unit of a free value. @param {State} state @param {string} name @returns {string} */
 export const unitOf = (state, name) => partsOf(state).numbers.find((row) => row.name === name)?.unit ?? "";
+
+/** The methods that the server knows, told apart by what their rows say of them, never by a name.
+ * @param {Pick<State, "about">} state @returns {Method[]} */
+const methodsOf = ({ about }) => about?.methods ?? [];
+
+/** Whether it sees neither friction nor gaps: its answers come at once. @param {Method | undefined} method */
+export const isQuick = (method) => method?.sees === "neither";
+
+/** The one with which the page searches while one waits. @param {Pick<State, "about">} state */
+export const quickMethod = (state) => methodsOf(state).find((method) => isQuick(method) && method.searches);
+
+/** The one of that name; without one of the name the quick one.
+ * @param {Pick<State, "about">} state @param {string} name */
+export const methodOf = (state, name) => methodsOf(state).find((method) => method.name === name) ?? quickMethod(state);
+
+/** The one by which the page judges. @param {Pick<State, "about" | "view">} state */
+export const judging = (state) => methodOf(state, state.view.method);
+
+/** What chooses the one by which the page judges. @param {Store} store */
+export const methodChoice = (store) => ({ value: judging(store.get())?.name,
+  choices: methodsOf(store.get()).map((method) => [method.name, methodTitle(method)]),
+  set: (/** @type {string} */ method) => store.look({ method }) });
+
+/** A method in words, with its name. @param {Method} method */
+function methodTitle({ name, sees }) {
+  const words = { neither: "no friction or gaps", friction: "with friction",
+    both: "with friction and gaps" }[sees] ?? "";
+  return `${words || name} (${name.replaceAll("-", " ")})`;
+}

@@ -105,6 +105,7 @@ function Drawn({ plot, laid, svg, picked, look, take, children }) {
   const clip = useMemo(() => `clip-${(clips += 1)}`, []);
   const points = plot.points ?? [];
   const near = (/** @type {PointerEvent} */ event) => nearestPoint(event, points, laid);
+  const lines = points[picked ?? -1]?.lines ?? [];
   return html`<svg ref=${svg} class="drawn" width=${width} height=${height} viewBox=${`0 0 ${width} ${height}`}
       role=${points.length > 0 ? "group" : "img"} aria-label=${plot.title} style=${{ fontSize: `${font}px` }}
       onPointerMove=${points.length > 0 && ((/** @type {PointerEvent} */ event) => {
@@ -138,7 +139,8 @@ function Drawn({ plot, laid, svg, picked, look, take, children }) {
     ${laid.keys.map((key) => html`<g key=${key.text}><rect class=${`swatch-of ${key.kind}`} x=${key.x}
       y=${key.y - font * 0.85} width=${font} height=${font} /><text x=${key.x + font * 1.4} y=${key.y}>
       ${key.text}</text></g>`)}
-    ${picked !== null && points[picked] && html`<${PointTip} laid=${laid} point=${points[picked]} />`}
+    ${lines.length > 0 && html`<${Tip} laid=${laid} x=${x.at(points[picked ?? 0].x)} up=${y.at(points[picked ?? 0].y)}
+      head=${lines[0]} rows=${lines.slice(1).map((name) => ({ name }))} />`}
     ${plot.note && html`<text x=${box.left} y=${laid.titles.x.y}>${plot.note(y)}</text>`}
     ${children}
   </svg>`;
@@ -228,7 +230,7 @@ function Reading({ plot, laid, at, cursor }) {
   return html`<g data-screen="" aria-hidden="true">
     ${cursor && html`<${CursorLine} cursor=${cursor} laid=${laid} />`}
     ${line !== null && html`<path class="cross" d=${`M${line} ${box.top}V${box.bottom}`} />
-      <${Tip} plot=${plot} laid=${laid} at=${/** @type {number} */ (at)} />`}
+      <${Tip} laid=${laid} x=${line} ...${readingAt(plot, laid, /** @type {number} */ (at), MOST)} />`}
   </g>`;
 }
 
@@ -242,43 +244,33 @@ function CursorLine({ cursor, laid: { box, x } }) {
     d=${`M${at} ${box.top}V${box.bottom}M${at - 5} ${box.top - 1}h10l-5 7z`} />`;
 }
 
-/** What the curves are at a place, as texts. @param {Declaration} plot @param {Layout} laid @param {number} at
+/** What the curves are at a place, as texts; of many the first. @param {Declaration} plot @param {Layout} laid
+ * @param {number} at @param {number} most
  * @returns {{head: string, rows: {name: string, text: string, colour: string}[]}} */
-function readingAt(plot, { x, y }, at) {
+function readingAt(plot, { x, y }, at, most = Infinity) {
   const head = `${shown(at / x.size, 4)} ${printed(x.unit)}`.trim();
   const rows = plot.curves.map((curve) => ({ name: curve.name, colour: curve.colour, value: valueAt(curve, at) }));
-  return { head, rows: rows.filter(({ value }) => value !== null).map(({ value, ...row }) =>
+  return { head, rows: rows.filter(({ value }) => value !== null).slice(0, most).map(({ value, ...row }) =>
     ({ ...row, text: shown(/** @type {number} */ (value) / y.size, 4) })) };
 }
 
 const MOST = 8; // values in the tip
 
-/** @param {{plot: Declaration, laid: Layout, at: number}} props */
-function Tip({ plot, laid, at }) {
-  const { font, x } = laid;
-  const { head, rows } = readingAt(plot, laid, at);
-  const few = rows.slice(0, MOST);
-  const texts = [head, ...few.map(({ name, text }) => `${name}  ${text}`)];
-  const wide = Math.max(...texts.map((text) => text.length)) * font * 0.62 + font * 1.6;
-  const high = (few.length + 1) * font * 1.4 + font * 0.8;
-  const { left, top } = freePlace(laid, x.at(at), wide, high);
-  return html`<g class="tip"><rect x=${left} y=${top} width=${wide} height=${high} rx="5" />
-    <text class="head" x=${left + font * 0.8} y=${top + font * 1.5}>${head}</text>
-    ${few.map(({ name, text, colour }, i) => html`<text key=${i} x=${left + font * 0.8} y=${top
-      + font * (2.9 + 1.4 * i)}><tspan class="of" style=${{ fill: curveColour(colour) }}>${name}</tspan>
-      <tspan x=${left + wide - font * 0.8} text-anchor="end">${text}</tspan></text>`)}</g>`;
-}
-
-/** What is read at a point. @param {{laid: Layout, point: Point}} props */
-function PointTip({ laid, point: { x, y, lines = [] } }) {
+/** What is read at a place, or at a point that is `up` there; texts are beside the names of their curves.
+ * @param {{laid: Layout, x: number, up?: number, head: string, rows: {name: string, text?: string,
+ * colour?: string}[]}} props */
+function Tip({ laid, x, up, head, rows }) {
   const { font } = laid;
-  if (lines.length === 0) return null;
-  const wide = Math.max(...lines.map((line) => line.length)) * font * 0.6 + font * 1.6;
-  const high = lines.length * font * 1.4 + font * 0.8;
-  const { left, top } = freePlace(laid, laid.x.at(x), wide, high, laid.y.at(y));
-  return html`<g class="tip" data-screen=""><rect x=${left} y=${top} width=${wide} height=${high} rx="5" />
-    ${lines.map((line, i) => html`<text key=${i} class=${i === 0 ? "head" : ""} x=${left + font * 0.8}
-      y=${top + font * (1.5 + 1.4 * i)}>${line}</text>`)}</g>`;
+  const letters = [head, ...rows.map(({ name, text = "" }) => `${name}  ${text}`.trim())].map(({ length }) => length);
+  const wide = Math.max(...letters) * font * 0.62 + font * 1.6;
+  const { left, top } = freePlace(laid, x, wide, (rows.length + 1) * font * 1.4 + font * 0.8, up);
+  const line = (/** @type {number} */ i) => top + font * (1.5 + 1.4 * i);
+  return html`<g class="tip" data-screen=""><rect x=${left} y=${top} width=${wide}
+      height=${(rows.length + 1) * font * 1.4 + font * 0.8} rx="5" />
+    <text class="head" x=${left + font * 0.8} y=${line(0)}>${head}</text>
+    ${rows.map(({ name, text, colour }, i) => html`<text key=${i} x=${left + font * 0.8} y=${line(i + 1)}><tspan
+      class=${colour && "of"} style=${colour && { fill: curveColour(colour) }}>${name}</tspan>${text
+      && html`<tspan x=${left + wide - font * 0.8} text-anchor="end">${text}</tspan>`}</text>`)}</g>`;
 }
 
 /** Where the fewest points of curves are, of the corners at a place that is read, or at a point. @param {Layout} laid

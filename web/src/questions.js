@@ -1,7 +1,6 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
-import { isSearched, layoutsWith, numbersOf } from "./library.js";
-import { isQuick, judging } from "./methods.js";
+import { isQuick, isSearched, judging, layoutsWith, numbersOf } from "./library.js";
 import { shownOf, soughtIn } from "./state/answers.js";
 import { entryAt, indicesIn, isRange, mapValues, own } from "./state/document.js";
 import { takenApart } from "./state/scale.js";

@@ -151,28 +151,16 @@ const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test
 
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openStudyFile(store, api, file) {
-  const { study, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
-  const other = problems?.[0]?.sentence;
-  if (isSimulation(study)) return openSimulation(store, api, file.name, study);
-  const isStudy =
-    study !== null && typeof study === "object" && ["vehicle", "layouts", "study"].every((key) => key in study);
-  if (!isStudy) {
-    store.say(`${file.name} is not a study file; nothing was changed. ${other ?? ""}`.trim());
-    return;
-  }
+  const { study, kind, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
+  if (kind === "simulate") return openSimulation(store, api, file.name, study);
+  if (kind !== "run")
+    return store.say(`${file.name} is not a study file; nothing was changed. ${problems[0]?.sentence ?? ""}`.trim());
   if (!(await beginWith(store, api, study))) return;
   const several = problems.length === 1 ? "one entry needs" : `${problems.length} entries need`;
   store.say(`${file.name} is open${problems.length ? `; ${several} another value` : ""}.`);
 }
 
 const RIG = "displacement"; // what is moved there: an end of the device itself
-
-/** Whether tables are those of a simulation file. @param {any} tables */
-const isSimulation = (tables) =>
-  tables !== null &&
-  typeof tables === "object" &&
-  ["vehicle", "elements", "layouts", "signal"].every((key) => key in tables) &&
-  !("study" in tables);
 
 /** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is
  * open. @param {Store} store @param {Api} api @param {string} name @param {any} tables */

@@ -1,8 +1,7 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
 import { Lost, Refusal, postNow } from "./api.js";
-import { freeIn, layoutsWith, unitOf } from "./library.js";
-import { isQuick, methodOf, quickMethod } from "./methods.js";
+import { freeIn, isQuick, layoutsWith, methodOf, quickMethod } from "./library.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { questions, strutTexts } from "./questions.js";
@@ -47,7 +46,7 @@ export async function optimise(store, api, asked) {
  * @param {import("./state/document.js").Study | null} of */
 export function takeOptima(store, designs, gesture = null, of = null) {
   const { study } = store.get().history.present;
-  const found = designs.map((best) => ({ best, values: best.texts ?? textsOf(store.get(), best.parameters ?? {}) }));
+  const found = designs.map((best) => ({ best, values: best.texts ?? {} }));
   const chosen = found.filter(({ values }) => Object.keys(values).length > 0);
   const taken =
     of === study ? chosen : chosen.filter(({ best, values }) => isHere(store.get(), best.layout, Object.keys(values)));
@@ -254,11 +253,6 @@ function unidentified({ parameters }) {
  * @param {any} fit */
 export const withheld = ({ parameters }) =>
   `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
-
-/** Parameters in SI units as texts that read back as the same numbers.
- * @param {State} state @param {{[name: string]: number}} parameters */
-const textsOf = (state, parameters) =>
-  Object.fromEntries(Object.entries(parameters).map(([name, value]) => [name, `${value} ${unitOf(state, name)}`]));
 
 /** @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body */
 export async function begin(store, api, body) {

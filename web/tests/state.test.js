@@ -19,8 +19,7 @@ import {
 import { documentFrom } from "../src/remembering.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited } from "../src/panels/asked.js";
-import { judging, quickMethod } from "../src/methods.js";
-import { elementsIn, freeIn, numbersOf, treeOf } from "../src/library.js";
+import { elementsIn, freeIn, judging, numbersOf, quickMethod, treeOf } from "../src/library.js";
 import { bestOf, comparedOf, questions, staleLayouts, unitsIn } from "../src/questions.js";
 import { takeNetwork } from "../src/working.js";
 import { partsOf } from "./reading.js";

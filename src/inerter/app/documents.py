@@ -23,18 +23,24 @@ Document = Mapping[str, Any]
 _Stamp = tuple[int, int] | None
 PATH = Path("study.toml")  # what a document is called that is no file
 _LAYOUTS = "layouts"
+_REQUIRED = {"run": {"vehicle", _LAYOUTS, "study"}, "simulate": {"vehicle", "elements", _LAYOUTS, "signal"}}
 _NUMBER = re.compile(r"[0-9]+")
 _KEPT = 256  # documents whose studies are kept
 
 
 def read(text: str, name: str = "") -> dict[str, Any]:
-    """The document that a text of TOML says, and its problems; null where it is no TOML."""
+    """The document that a text of TOML says, with its kind and its problems; null where it is no TOML."""
     path = Path(Path(name).name or PATH)
     try:
         document = _with_baseline(_plain(tables_of(text.encode("utf-8", "surrogatepass"), path, WHAT)))
     except InerterError as error:
-        return {"study": None, "problems": problems_of(error)}
-    return {"study": document, "problems": problems(document)}
+        return {"study": None, "kind": "", "problems": problems_of(error)}
+    return {"study": document, "kind": command_of(document), "problems": problems(document)}
+
+
+def command_of(document: Document) -> str:
+    """Command for a document that has what its kind of file requires; empty for any other."""
+    return next((command for command, sections in _REQUIRED.items() if sections <= set(document)), "")
 
 
 def _with_baseline(document: dict[str, Any]) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from inerter.app import about, bodies, documents, parts, study_parts
 from inerter.app.api_description import Endpoint, openapi
 from inerter.app.calls import panel
 from inerter.app.designs import designs_of
+from inerter.app.examples import example_cards
 from inerter.app.fixed_designs import with_fixed_values
 from inerter.app.jobs import Job, as_event, result_of, with_result
 from inerter.app.kinds import KINDS
@@ -41,8 +42,7 @@ async def _start_stamp(server: Server, request: Request) -> dict[str, Any]:
 
 
 async def _examples(server: Server, request: Request) -> dict[str, Any]:
-    found = await asyncio.to_thread(about.examples)
-    return {"examples": [{"name": n, "title": about.tables(p).get("title", n)} for n, p in found.items()]}
+    return await asyncio.to_thread(example_cards)
 
 
 async def _example(server: Server, request: Request) -> dict[str, Any]:
@@ -58,7 +58,9 @@ async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dic
         raise Refusal(400, "Give either the text of a study file or a study document.")
     if body.text is not None:
         return await asyncio.to_thread(documents.read, body.text, body.name)
-    return {"study": body.study, "problems": await asyncio.to_thread(documents.problems, body.study)}
+    study = body.study or {}
+    found = await asyncio.to_thread(documents.problems, study)
+    return {"study": study, "kind": documents.command_of(study), "problems": found}
 
 
 async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> Response:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from inerter.app.answers import optimum
+from inerter.app.answers import optimum, texts_of
 from inerter.app.comparing import compare_designs
 from inerter.app.deciding import margins_of
 from inerter.app.designs import designs_of, problem_digest
@@ -91,10 +91,11 @@ def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
 
 
 def _as_data(result: StudyResult) -> Any:
-    """Results as `inerter run --json` prints them, with the digests of the problems that the designs solve."""
+    """Results as `inerter run --json` prints them, with values as texts, and digests of the problems they solve."""
     data, study = json.loads("".join(as_text(result))), result.study
     for design in data["designs"]:
         here = study.at([design[sweep.label] for sweep in study.sweeps])
+        design["texts"] = texts_of(here, design["parameters"])
         design["problem_digests"] = [problem_digest(here, design["layout"], design["index"])]
     return data
 

@@ -1,15 +1,14 @@
 // Which layout: all of them ranked by the goal, each with its network, its value, and what it is against the baseline.
 
-import { unchosenIn } from "../library.js";
-import { methodChoice } from "../methods.js";
+import { methodChoice, unchosenIn } from "../library.js";
 import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
 import { indicesIn, nextLayout } from "../state/document.js";
 import { aligned, estimated, placed, scaled, unitFor, withUnit } from "../state/scale.js";
 import { DropDown, Select, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
 import { html, useLayoutEffect, useMemo, useRef, useState } from "../parts/html.js";
-import { layoutColour } from "../parts/colours.js";
-import { useLate, useShown } from "../parts/shown.js";
+import { layoutColour } from "../plots/colours.js";
+import { useLate, useShown } from "../parts/clock.js";
 import { Sketch, sketchesOf } from "./sketch.js";
 import { toSearch } from "./search.js";
 import { problemsOf } from "./values.js";

@@ -1,8 +1,7 @@
 // What is asked of the study: its indices, and the limits that every design keeps.
 
 import { numbersOf } from "../library.js";
-import { Chip, Select, textHandler, useChoice } from "../parts/controls.js";
-import { Field } from "../parts/field.js";
+import { Chip, Field, Select, textHandler, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { freshName } from "../network/algebra.js";
 import { answerOf } from "../questions.js";

@@ -3,9 +3,8 @@
 import { scaled, unitFor, withUnit } from "../state/scale.js";
 import { Chip, Select, Table, formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { Being } from "../parts/clock.js";
+import { Being, useLate } from "../parts/clock.js";
 import { Doubts, Unchosen, isOk } from "../parts/doubts.js";
-import { useLate } from "../parts/shown.js";
 import { answerOf, comparable, comparedOf } from "../questions.js";
 import { Measured, membersOf, percent } from "./answers.js";
 

@@ -2,10 +2,9 @@
 
 import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
-import { methodChoice } from "../methods.js";
 import { allDesigns, answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
-import { isSearched, searchedLayouts, unchosenIn } from "../library.js";
-import { quantity, takenApart } from "../state/scale.js";
+import { isSearched, methodChoice, searchedLayouts, unchosenIn } from "../library.js";
+import { capital, quantity, takenApart } from "../state/scale.js";
 import { isBeingChosen } from "../asking.js";
 import { AskedPanel, IndexSettings, chosenFor } from "./asked.js";
 import { indexWords, indicesOf, isWord } from "./answers.js";
@@ -49,10 +48,10 @@ export function goTo(store, number) {
 /** The vehicle and its speed. @param {State} state */
 function vehicleOf({ history }) {
   const { vehicle, road } = history.present.study;
-  const model = String(vehicle?.model ?? "Own vehicle").replaceAll("-", " ");
+  const model = capital(String(vehicle?.model ?? "own vehicle").replaceAll("-", " "));
   const apart = takenApart(road?.speed);
   const speed = apart && quantity(apart.number, apart.unit).replaceAll(" ", "\u00a0");
-  return [model.charAt(0).toUpperCase() + model.slice(1), speed].filter(Boolean).join(", ");
+  return [model, speed].filter(Boolean).join(", ");
 }
 
 /** The strut that is edited, and its place in the ranking. @param {State} state */

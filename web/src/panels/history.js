@@ -1,11 +1,9 @@
 // The simulated road: histories with stick and open gaps shaded, and the car in motion, at one time.
 
-import { Being } from "../parts/clock.js";
+import { Being, useLate } from "../parts/clock.js";
 import { Doubts, Unchosen } from "../parts/doubts.js";
-import { Field } from "../parts/field.js";
-import { Select } from "../parts/controls.js";
+import { Field, Select } from "../parts/controls.js";
 import { html, useMemo } from "../parts/html.js";
-import { useLate } from "../parts/shown.js";
 import { Plot } from "../plot.js";
 import { layoutColours } from "../plots/colours.js";
 import { answerOf, designOf } from "../questions.js";

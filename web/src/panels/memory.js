@@ -91,7 +91,7 @@ async function saveReport(store, api, document, called) {
 
 /** @param {{store: Store, api: Api}} props */
 function Open({ store, api }) {
-  const [examples, setExamples] = useState(/** @type {{name: string, title: string}[]} */ ([]));
+  const [examples, setExamples] = useState(/** @type {{name: string, title: string, study: any}[]} */ ([]));
   const look = async () => {
     if (examples.length === 0) setExamples((await api.get("examples").catch(() => ({ examples: [] }))).examples);
   };
@@ -105,16 +105,16 @@ function Open({ store, api }) {
     input.value = "";
     close(event);
   };
-  /** @param {Event} event @param {string} name */
-  const openExample = async (event, name) => {
+  /** @param {Event} event @param {any} study */
+  const openExample = (event, study) => {
     close(event);
-    await openStudy(store, api, (await api.get(`examples/${encodeURIComponent(name)}`)).study);
+    void openStudy(store, api, study);
   };
   return html`<${DropDown} title="Open" id="open-menu" onOpen=${look}>
     <label class="file">A study file or record… <input type="file" multiple onChange=${openFiles} /></label>
     ${examples.length > 0 && html`<b class="legend">Examples</b>`}
-    ${examples.map(({ name, title }) => html`<button type="button" key=${name}
-      onClick=${(/** @type {Event} */ event) => openExample(event, name)}>${title || name}</button>`)}
+    ${examples.map(({ name, title, study }) => html`<button type="button" key=${name}
+      onClick=${(/** @type {Event} */ event) => openExample(event, study)}>${title}</button>`)}
   <//>`;
 }
 

@@ -1,10 +1,10 @@
 // The vehicle in motion on its road: a picture that follows the clock, which is that of the plot of the motion too.
 
 import { isSearched, numbersOf, shownElement } from "../library.js";
-import { layoutColour } from "../parts/colours.js";
+import { layoutColour } from "../plots/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
-import { useLate } from "../parts/shown.js";
+import { useLate } from "../parts/clock.js";
 import { answerOf, baselineOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
 import { captions } from "../vehicles/captions.js";

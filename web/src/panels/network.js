@@ -1,7 +1,7 @@
 // The strut as a drawn network, and as text; both are the same value, and either can be edited.
 
-import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt } from "../network/algebra.js";
-import { removeAt, replaceAt, shiftAt, written } from "../network/algebra.js";
+import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt, removeAt, replaceAt, shiftAt, written }
+  from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, own, strutsOf, textOf } from "../state/document.js";
 import { brief, briefIn, printed, strutWords, symbolParts } from "../state/scale.js";

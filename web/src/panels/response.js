@@ -1,10 +1,9 @@
 // Frequency responses of the strut and of the baseline, and of other struts and kept designs: gain and phase.
 
-import { Being } from "../parts/clock.js";
+import { Being, useLate, useShown } from "../parts/clock.js";
 import { Chip, DropDown, Select, useChoice } from "../parts/controls.js";
 import { Unchosen } from "../parts/doubts.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { useLate, useShown } from "../parts/shown.js";
 import { Plot } from "../plot.js";
 import { layoutColours, numberedColour } from "../plots/colours.js";
 import { answerOf, baselineOf, choicesOf, drawnIndex, ghostPanel, ghostsOf, isRightStill, shownDesigns }

@@ -6,7 +6,7 @@ import { Plot } from "../plot.js";
 import { Select, Table, useChoice, formHandler, showNewest } from "../parts/controls.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { strutTexts } from "../questions.js";
-import { shown, strutWords } from "../state/scale.js";
+import { capital, shown, strutWords } from "../state/scale.js";
 import { Files } from "./files.js";
 import { takeFitted, tryToBegin, withheld } from "../working.js";
 import { JobHead } from "./work.js";
@@ -102,9 +102,6 @@ function Causes({ store, api, result, main }) {
       ${offers.map((offer) => html`<${Offered} key=${offer.label} store=${store} api=${api} result=${result}
         offer=${offer} main=${main && number === 0} />`)}</li>`)}</ol>`;
 }
-
-/** @param {string} text */
-const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** A button that fits the same records again, as a fit advises.
  * @param {{store: Store, api: Api, result: any, offer: Offer, main?: boolean}} props */

@@ -1,12 +1,10 @@
 // A search for the best network: rankings, which fill while it goes on, the best for each number of elements, the front
 // over all networks, and real inerters; each network can be taken into the editor.
 
-import { IndexChips, Select, Table, useChoice } from "../parts/controls.js";
+import { Field, IndexChips, Select, Table, useChoice } from "../parts/controls.js";
 import { Doubts, isOk } from "../parts/doubts.js";
-import { Field } from "../parts/field.js";
 import { html, useMemo, useState } from "../parts/html.js";
-import { isFreeNetwork, kindOf, searchedLayouts, treeOf } from "../library.js";
-import { quickMethod } from "../methods.js";
+import { isFreeNetwork, kindOf, quickMethod, searchedLayouts, treeOf } from "../library.js";
 import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf, strutTexts } from "../questions.js";
@@ -192,42 +190,38 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   const better = compared ? [["better by", `than ${baseline}`]] : [];
   /** @type {string[]} */
   const methods = [...new Set(real.map((/** @type {Row} */ { method }) => method))];
+  /** @param {string} label @param {string} words @param {Row[]} rows @param {boolean} [ranked] */
+  const table = (label, words, rows, ranked = false) => html`<p class="quiet">${words}</p>
+    <${Table} key=${label} label=${label} heads=${["network", index, ...better, ""]}>
+      ${rows.map((row, i) => html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take}
+        rank=${ranked ? i + 1 : undefined} written=${written} compared=${compared} />`)}
+    <//>`;
   return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
       ({ of: network, status, message }))} />
     ${ranking.length === 0 && html`<p class="quiet">No network is optimised yet.</p>`}
     ${frontier.length > 1 && html`<${Frontier} about=${state.about} one=${one} baseline=${baseline} written=${written}
       take=${take} />`}
-    ${ranking.length > 0 && html`<p class="quiet">The best ${ranking.length} ${complete
-        ? `of ${networks} networks` : "so far"} (* at a bound)</p>
-    <${Table} label="Ranking" heads=${["network", index, ...better, ""]}>
-      ${ranking.map((/** @type {Row} */ row, /** @type {number} */ i) => html`<${NetworkRow} key=${row.network}
-        state=${state} row=${row} take=${take} rank=${i + 1} written=${written}
-        text=${shown(times(row.value, written.factor))} compared=${compared} />`)}
-    <//>`}
-    ${methods.map((method) => html`<p class="quiet" key=${method}>With real inerters, elastic and with friction:
-        optimised by ${method}</p>
-      <${Table} key=${`${method} table`} label=${`Real inerters by ${method}`}
-        heads=${["network", index, ...better, ""]}>
-        ${real.filter((/** @type {Row} */ row) => row.method === method).map((/** @type {Row} */ row) =>
-          html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take} written=${written}
-            text=${optimised(scaled(row, written.factor))} compared=${compared} />`)}
-      <//>`)}`;
+    ${ranking.length > 0 && table("Ranking", `The best ${ranking.length} ${complete ? `of ${networks} networks`
+      : "so far"} (* at a bound)`, ranking, true)}
+    ${methods.map((method) => table(`Real inerters by ${method}`,
+      `With real inerters, elastic and with friction: optimised by ${method}`,
+      real.filter((/** @type {Row} */ row) => row.method === method)))}`;
 }
 
 /** The best value with its standard uncertainty. @param {Row} row */
 const optimised = ({ value, standard_error: error }) =>
   (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
 
-/** @param {{state: State, row: Row, rank?: number, text: string, written: WrittenUnit, compared: boolean,
+/** @param {{state: State, row: Row, rank?: number, written: WrittenUnit, compared: boolean,
  * take: (row: Row) => void}} props */
-function NetworkRow({ state, row, rank, text, written: { unit, factor }, compared, take }) {
+function NetworkRow({ state, row, rank, written: { unit, factor }, compared, take }) {
   const { network, status, improvement_percent: part, ideal, same_values: same } = row;
   return html`<tr data-network=${network}>
     <th scope="row"><div class="found"><span>${rank}</span><${Sketch} state=${state} tree=${row.tree} />
       <div><code>${network}</code><div class="scatter">${valuesIn(state.about, { ...row.elements, ...row.values },
         row.active_bounds)}</div></div></div></th>
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
-      ${text} <span class="unit">${printed(unit)}</span>
+      ${optimised(scaled(row, factor))} <span class="unit">${printed(unit)}</span>
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
     ${compared && html`<td class="number">${percent(part)}</td>`}

@@ -3,6 +3,7 @@
 import { Moving } from "../parts/clock.js";
 import { html, useEffect, useState } from "../parts/html.js";
 import { canonical } from "../network/algebra.js";
+import { kindNamed } from "../library.js";
 import { drawing, pathOf } from "../network/drawing.js";
 import { open, openedBefore } from "../remembering.js";
 import { openStudy } from "../working.js";
@@ -10,65 +11,20 @@ import { symbolPath } from "./sketch.js";
 
 /** @import { Store } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
-/** @typedef {{name: string, study: any, tree: any, kinds: {[name: string]: any}, free: boolean}} Example */
-
-/** What a study asks beyond its designs, by the keys of its section `study`. @type {[string, string][]} */
-const ASKED = [["sweep", "Where is it worth it?"], ["tolerance", "What if values scatter?"],
-  ["budgets", "How much friction or backlash is allowable?"], ["trade_off", "What does one index cost the other?"],
-  ["conditions", "What is best over all operating conditions?"], ["subject_to", "What is best within constraints?"]];
-
-/** What is asked of a vehicle. @type {{[model: string]: string}} */
-const OF_VEHICLE = { "quarter-car": "Which strut for a quarter car?", "half-car": "Two axles, one road",
-  "full-car": "Four wheels and anti-roll bars", absorber: "A vibration absorber" };
-
-/** Vehicles to begin with. @type {[string, string][]} */
-const VEHICLES = [["quarter-car", "Quarter car"], ["half-car", "Half car"], ["full-car", "Full car"],
-  ["mechanism", "Own vehicle, of masses and struts"]];
-
-/** The question of an example; its own title where it asks nothing that is listed.
- * @param {{study: any, free: boolean}} example @returns {string} */
-function questionOf({ study, free }) {
-  if (free) return "Which network is the best of all?";
-  const asked = ASKED.find(([key]) => study.study?.[key] !== undefined || study[key] !== undefined);
-  return asked?.[1] ?? OF_VEHICLE[study.vehicle?.model] ?? study.title;
-}
-
-const ORDER = [...Object.values(OF_VEHICLE), ...ASKED.map(([, question]) => question)];
-
-/** Whether an example is that of its vehicle, and asks nothing beside. @param {Example} example */
-const isPlain = ({ name, study }) => name === study.vehicle?.model;
-
-/** The example to begin with a vehicle. @param {Example[]} examples @param {string} model */
-function beginningWith(examples, model) {
-  const all = examples.filter(({ study, free }) => study.vehicle?.model === model && !free);
-  const size = (/** @type {Example} */ { study }) => JSON.stringify(study).length;
-  return all.find(isPlain) ?? all.toSorted((a, b) => size(a) - size(b))[0];
-}
-
-/** Examples in the order of their questions, each with a heading of its own. @param {Example[]} examples
- * @returns {{example: Example, heading: string}[]} */
-function cardsOf(examples) {
-  /** @param {Example} example */
-  const place = (example) => (ORDER.indexOf(questionOf(example)) + 1) || ORDER.length + 1;
-  const sorted = examples.toSorted((a, b) => place(a) - place(b) || Number(isPlain(b)) - Number(isPlain(a)));
-  const seen = new Set();
-  return sorted.map((example) => {
-    const question = questionOf(example);
-    const heading = seen.has(question) ? example.study.title : question;
-    seen.add(question);
-    return { example, heading };
-  });
-}
+/** An example with its question or title as `heading`, its largest network, and what its elements are.
+ * @typedef {{name: string, title: string, heading: string, study: any, tree: any, kinds: {[name: string]: string}}}
+ * Example */
+/** `vehicles`: which example to begin with. @typedef {{examples: Example[], vehicles: {title: string,
+ * name: string}[]}} Found */
 
 /** @param {{store: Store, api: Api}} props */
 export function Start({ store, api }) {
-  const [examples, setExamples] = useState(/** @type {Example[]} */ ([]));
+  const [{ examples, vehicles }, setFound] = useState(/** @type {Found} */ ({ examples: [], vehicles: [] }));
   const { about } = store.get();
   const ready = about !== null;
   useEffect(() => {
     let shown = true;
-    if (ready) examplesOf(api, about, (found) => shown && setExamples(found), () => shown)
-      .catch(() => {}); // that the server is lost is told elsewhere
+    if (ready) api.get("examples").then((found) => shown && setFound(found), () => {}); // told elsewhere
     return () => { shown = false; };
   }, [ready]);
   /** @param {any} study */
@@ -80,20 +36,17 @@ export function Start({ store, api }) {
       <div class="inside">
         ${ready && examples.length === 0 && html`<p class="pad"><${Moving} what="Reading the examples" /></p>`}
         <div class="cards" onKeyDown=${walk}>
-        ${cardsOf(examples).map(({ example, heading }) => html`<button type="button" class="card" key=${example.name}
+        ${examples.map((example) => html`<button type="button" class="card" key=${example.name}
           data-example=${example.name} onClick=${() => begin(example.study)}>
-          <${Picture} example=${example} />
-          <span><b>${heading}</b>${heading !== example.study.title
-            && html`<small>${example.study.title}</small>`}</span></button>`)}
+          <${Picture} about=${about} example=${example} />
+          <span><b>${example.heading}</b>${example.heading !== example.title
+            && html`<small>${example.title}</small>`}</span></button>`)}
       </div></div></section>
     <div class="col">
       <section class="panel" aria-labelledby="vehicles-title"><div class="inside">
         <div class="head"><h2 id="vehicles-title">Begin with a vehicle</h2></div>
-        ${VEHICLES.map(([model, title]) => {
-          const example = beginningWith(examples, model);
-          return html`<button type="button" class="list-row" key=${model} disabled=${!example}
-            onClick=${() => begin(example?.study)}><span>${title}</span></button>`;
-        })}
+        ${vehicles.map(({ title, name }) => html`<button type="button" class="list-row" key=${name}
+          onClick=${() => begin(examples.find((each) => each.name === name)?.study)}><span>${title}</span></button>`)}
         <div class="head"><h2>Or with a file</h2></div>
         <div class="drop">Drop a study file (.toml), a record (.csv, .tdms, .mf4, .mat) or a folder of results anywhere
           on the page, or<br /><label class="file">choose a file <kbd>Ctrl O</kbd> <input type="file" multiple
@@ -122,29 +75,6 @@ function walk(event) {
   /** @type {HTMLElement} */ (next).focus();
 }
 
-/** The examples of the library, and then their networks, for the pictures. @param {Api} api @param {any} about
- * @param {(examples: Example[]) => void} told @param {() => boolean} wanted */
-async function examplesOf(api, about, told, wanted) {
-  const { examples } = await api.get("examples");
-  const studies = await Promise.all(examples.map((/** @type {any} */ { name }) =>
-    api.get(`examples/${encodeURIComponent(name)}`)));
-  /** @type {Example[]} */
-  let found = studies.map(({ study }, i) => ({ name: examples[i].name, study, tree: null, kinds: {},
-    free: Object.values(study.elements ?? {}).some((/** @type {any} */ entry) => entry.network !== undefined) }));
-  told(found);
-  for (const { name, study } of found) {
-    if (!wanted()) return;
-    const { networks, elements } = await api.post("study/parts", { study });
-    const [largest] = networks.filter((/** @type {any} */ { tree }) => tree)
-      .toSorted((/** @type {any} */ a, /** @type {any} */ b) => b.names.length - a.names.length);
-    const kinds = Object.fromEntries(Object.entries(elements).map(([element, { kind }]) =>
-      [element, about.elements.find((/** @type {any} */ { key }) => key === kind)]));
-    const tree = largest && canonical(largest.tree);
-    found = found.map((each) => (each.name === name ? { ...each, tree, kinds } : each));
-    told(found);
-  }
-}
-
 const GROUND = 104;
 
 /** A picture of a vehicle: its bodies as paths, where its wheels and struts are.
@@ -171,25 +101,27 @@ const OUTLINES = {
 const outlineOf = (vehicle) => OUTLINES[vehicle?.model]
   ?? (Object.keys(vehicle?.tyres ?? {}).length > 2 ? COACH : BLOCK);
 
-/** A strut below what it carries. @param {{example: Example}} props */
-function Picture({ example: { study, tree, kinds } }) {
+/** A strut below what it carries. @param {{about: any, example: Example}} props */
+function Picture({ about, example: { study, tree, kinds } }) {
   const { bodies, wheels, radius, struts, ...place } = outlineOf(study.vehicle);
   return html`<svg viewBox="0 0 200 112" aria-hidden="true">
     <path d=${`M0 ${GROUND}H200`} stroke="var(--road)" stroke-width="2" />
     ${bodies.map((path) => html`<path key=${path} d=${path} fill="var(--body)" stroke="var(--ink)" />`)}
     ${wheels.map((x) => html`<circle cx=${x} cy=${GROUND - radius - 1} r=${radius} fill="var(--tyre)"
       stroke="var(--ink2)" /><circle cx=${x} cy=${GROUND - radius - 1} r=${0.54 * radius} fill="var(--body)" />`)}
-    ${tree && struts.map((x) => html`<${Strut} key=${x} tree=${tree} kinds=${kinds} x=${x} ...${place} />`)}
+    ${tree && struts.map((x) => html`<${Strut} key=${x} about=${about} tree=${canonical(tree)} kinds=${kinds} x=${x}
+      ...${place} />`)}
   </svg>`;
 }
 
-/** @param {{tree: any, kinds: {[name: string]: any}, x: number, top: number, bottom: number, width: number}} props */
-function Strut({ tree, kinds, x, top, bottom, width }) {
+/** @param {{about: any, tree: any, kinds: {[name: string]: string}, x: number, top: number, bottom: number,
+ * width: number}} props */
+function Strut({ about, tree, kinds, x, top, bottom, width }) {
   const plan = drawing(tree);
   const scale = Math.min((bottom - top) / plan.height, width / (plan.left + plan.right));
   const tall = (bottom - top) / plan.height;
   return html`<g class="sketch" transform=${`translate(${x} ${top}) scale(${scale} ${tall})`} color="var(--ink)">
     <path d=${pathOf(plan.lines)} />
     ${plan.placed.map(({ name, path, x: left, y }) => html`<path key=${path.join()}
-      transform=${`translate(${left} ${y})`} d=${symbolPath(kinds[name])} />`)}</g>`;
+      transform=${`translate(${left} ${y})`} d=${symbolPath(kindNamed({ about }, kinds[name]))} />`)}</g>`;
 }

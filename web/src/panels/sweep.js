@@ -5,7 +5,6 @@ import { Doubts, isOk } from "../parts/doubts.js";
 import { html, useMemo, useState } from "../parts/html.js";
 import { numbersOf } from "../library.js";
 import { Plot } from "../plot.js";
-import { mapValues } from "../state/document.js";
 import { coloursOf } from "../plots/colours.js";
 import { printed, quantity, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
 import { membersOf, takeOptima } from "../working.js";
@@ -47,8 +46,8 @@ export function SweepResult({ store, api, job }) {
   const { about } = store.get();
   const { title = "" } = indicesOf(store.get()).find(({ symbol }) => symbol === index) ?? {};
   const written = useMemo(() => unitFor(about, own.map(({ value }) => value), own[0]?.unit ?? ""), [about, own]);
-  const plot = useMemo(() => declared(about, own, { of, baseline: result.baseline, isRelative, written, title,
-    units: result.units ?? {} }), [own, of, isRelative, written, title]);
+  const plot = useMemo(() => declared(about, own, { of, baseline: result.baseline, isRelative, written, title }),
+    [own, of, isRelative, written, title]);
   const [picked, look] = useState(/** @type {number | null} */ (null));
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
     <${Plot} plot=${plot} table=${tableOf(own, of, written, result.units ?? {})} picked=${picked} look=${look}
@@ -70,10 +69,9 @@ export function SweepResult({ store, api, job }) {
 const writtenOf = (value, { unit, written }) => quantity(value / (written?.factor ?? 1), written?.unit ?? unit);
 
 /** @param {any} about @param {Row[]} rows
- * @param {{of: Swept, baseline: string, isRelative: boolean, written: WrittenUnit, title: string,
- * units: {[name: string]: string}}} how
+ * @param {{of: Swept, baseline: string, isRelative: boolean, written: WrittenUnit, title: string}} how
  * @returns {Declaration & {points: Place[]}} */
-function declared(about, rows, { of, baseline, isRelative, written: { unit, factor }, title, units }) {
+function declared(about, rows, { of, baseline, isRelative, written: { unit, factor }, title }) {
   const layouts = [...new Set(rows.map(({ layout }) => layout))];
   const colours = coloursOf(layouts, baseline);
   const { index = "" } = rows[0] ?? {};
@@ -94,7 +92,7 @@ function declared(about, rows, { of, baseline, isRelative, written: { unit, fact
     points: sorted.flatMap((own, curve) => (isRelative && layouts[curve] === baseline ? [] : own.flatMap((row) => {
       const value = numberOr(valueOf(row));
       if (value === null) return [];
-      const values = valuesIn(about, mapValues(row.parameters ?? {}, (each, name) => `${each} ${units[name] ?? ""}`));
+      const values = valuesIn(about, row.texts ?? {});
       const reduced = typeof row.improvement_percent === "number" && row.layout !== baseline
         ? `, ${shown(row.improvement_percent, 3)} % below ${baseline}` : "";
       const doubt = isOk(row.status) ? "" : `${row.status}: `;

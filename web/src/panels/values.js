@@ -2,15 +2,13 @@
 // whether it may vary; and the best values of what may.
 
 import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { isSearched, layoutsWith, numbersOf, selectedElement, wrongIn } from "../library.js";
-import { judging, quickMethod } from "../methods.js";
+import { isSearched, judging, layoutsWith, numbersOf, quickMethod, selectedElement, wrongIn } from "../library.js";
 import { Moving } from "../parts/clock.js";
-import { formHandler, textHandler } from "../parts/controls.js";
-import { Name } from "../parts/name.js";
+import { Name, formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, bestOf, goalOf, isFitting, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
-import { STEPS, brief, briefIn, completed, positionOf, printed, quantity, takenApart, valueAt }
+import { STEPS, brief, briefIn, capital, completed, positionOf, printed, quantity, takenApart, valueAt }
   from "../state/scale.js";
 import { optimise } from "../working.js";
 
@@ -100,8 +98,7 @@ const idOf = ({ path }) => path.join(".");
 
 /** @param {string} section @param {unknown} model  which one of its kind it is, if it says so */
 function titleOf(section, model) {
-  const title = section.charAt(0).toUpperCase() + section.slice(1);
-  return model ? `${title}: ${String(model).replace("-", " ")}` : title;
+  return capital(section) + (model ? `: ${String(model).replace("-", " ")}` : "");
 }
 
 /** The table of a section in which a number stands, if it is in one. @param {NumberRow} row */

@@ -1,6 +1,6 @@
-// What is coming moves, and tells how long it has been coming.
-import { html, useEffect, useState } from "./html.js";
-import { useLate } from "./shown.js";
+// How an answer stands: what is coming moves, and tells how long it has been coming; numbers of before turn pale.
+import { answerOf } from "../questions.js";
+import { html, useEffect, useLayoutEffect, useState } from "./html.js";
 
 const OFTEN = 500; // [ms] between two looks at the clock
 const SOON = 1; // [s] from where the time is told
@@ -43,4 +43,30 @@ export function Being({ shown: { is, before, lost } }) {
   const coming = is === "coming";
   const what = WORDS[coming && lost ? "lost" : is] + (useLate(before) ? BEFORE : "");
   return html`<span class="being" data-being=${is}>${coming && !lost ? html`<${Moving} what=${what} />` : what}</span>`;
+}
+
+/** Tells the window when an answer is on the screen.
+ * @param {string} panel @param {import("../state/store.js").State} state */
+export function useShown(panel, state) {
+  const { is, value } = answerOf(state, panel);
+  useLayoutEffect(() => {
+    dispatchEvent(new CustomEvent("inerter:shown", { detail: { panel, newest: is === "current" } }));
+  }, [is, value]);
+}
+
+const LATE = 100; // [ms]: most steps of a slider are answered before that
+
+/** Whether what is shown is of before, and has been for so long that it is marked. A transition of the styles would
+ * wait too, but it makes each cell a layer of its own. @param {boolean} before */
+export function useLate(before) {
+  const [late, setLate] = useState(false);
+  useEffect(() => {
+    if (!before) return undefined;
+    const waiting = setTimeout(() => setLate(true), LATE);
+    return () => {
+      clearTimeout(waiting);
+      setLate(false);
+    };
+  }, [before]);
+  return before && late;
 }

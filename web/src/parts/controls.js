@@ -1,4 +1,5 @@
 // Controls and tables that the panels share, and handlers of their events.
+import { symbolParts } from "../state/scale.js";
 import { html, useState } from "./html.js";
 
 /** A handler of events that hands on the text of the control.
@@ -12,9 +13,9 @@ export const formHandler = (act) => (event) => {
   act(new FormData(/** @type {HTMLFormElement} */ (event.currentTarget)), event);
 };
 
-/** Shows the first element that a selector finds, from its top, once it is drawn. @param {string} selector */
-export const showNewest = (selector) =>
-  requestAnimationFrame(() => document.querySelector(selector)?.scrollIntoView({ block: "start" }));
+/** Shows the first element that a selector finds, from its top, once what is due is drawn. @param {string} selector */
+export const showNewest = (selector) => setTimeout(() => requestAnimationFrame(() =>
+  document.querySelector(selector)?.scrollIntoView({ block: "start" })));
 
 /** The name that is picked, or the first where none of them is, and the function that picks one.
  * @param {string[]} names @returns {[string | undefined, (name: string) => void]} */
@@ -57,3 +58,23 @@ export const Table = ({ label, heads, children, ...attributes }) => html`<div cl
     const [text, title] = [head].flat();
     return html`<th scope="col" title=${title}>${text}</th>`;
   })}</tr></thead><tbody>${children}</tbody></table></div>`;
+
+/** A field of which the text is taken over with Enter, or on leaving it; what is being typed stays while answers
+ * arrive and the page is drawn anew.
+ * @param {{text: string | number | undefined, done: (text: string) => void, [attribute: string]: unknown}} props */
+export function Field({ text, done, ...attributes }) {
+  const [typed, setTyped] = useState(/** @type {string | null} */ (null));
+  const finish = textHandler((entered) => {
+    setTyped(null);
+    if (entered !== String(text ?? "")) done(entered);
+  });
+  return html`<input ...${attributes} value=${typed ?? text} onInput=${textHandler(setTyped)} onChange=${finish}
+    onKeyDown=${(/** @type {KeyboardEvent} */ event) => event.key === "Enter" && finish(event)} />`;
+}
+
+/** A name; that of an element as a symbol, as in the picture of the vehicle.
+ * @param {{label: string, element?: boolean}} props */
+export function Name({ label, element = true }) {
+  const [symbol, subscript] = element ? symbolParts(label) : [label, ""];
+  return subscript ? html`${symbol}<sub>${subscript}</sub>` : symbol;
+}

@@ -20,3 +20,6 @@ export const layoutColours = (document) =>
 
 /** The colours of several outputs of one design. @param {number} number */
 export const numberedColour = (number) => NUMBERED[number % NUMBERED.length];
+
+/** The colour of a layout, for styles. @param {Document} document @param {string} layout */
+export const layoutColour = (document, layout) => `var(--${layoutColours(document)[layout] ?? "s3"})`;

@@ -1,6 +1,6 @@
 // Round marks of axes, their texts, and units with a prefix where numbers would be long.
 
-import { printed, superscript } from "../state/scale.js";
+import { capital, printed, superscript, withUnit } from "../state/scale.js";
 
 const ROUND = [1, 2, 5, 10];
 
@@ -70,6 +70,5 @@ export function shortUnit(largest, unit) {
 
 /** The title of an axis: what it is, and the unit in brackets. @param {string} what @param {string} unit */
 export function axisTitle(what, unit) {
-  const begun = /^[a-z]{2}/.test(what) ? what[0].toUpperCase() + what.slice(1) : what;
-  return (unit ? `${begun} [${printed(unit)}]` : begun).replaceAll(" x ", " × ");
+  return withUnit(/^[a-z]{2}/.test(what) ? capital(what) : what, unit).replaceAll(" x ", " × ");
 }

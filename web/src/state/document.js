@@ -226,9 +226,9 @@ function placed(table, place, value) {
 export const without = (table, key) => Object.fromEntries(Object.entries(table).filter(([each]) => each !== key));
 
 /** A table with each of its values changed. @template T, R @param {{[key: string]: T}} table
- * @param {(value: T, key: string) => R} change @returns {{[key: string]: R}} */
+ * @param {(value: T) => R} change @returns {{[key: string]: R}} */
 export const mapValues = (table, change) =>
-  Object.fromEntries(Object.entries(table).map(([key, value]) => [key, change(value, key)]));
+  Object.fromEntries(Object.entries(table).map(([key, value]) => [key, change(value)]));
 
 /** A table in which a key is another one, at its place. @template T @param {{[key: string]: T}} table
  * @param {string} old @param {string} name @returns {{[key: string]: T}} */

@@ -150,6 +150,9 @@ export const scaled = (result, factor) => (factor === 1 ? result : { ...result, 
 /** A number times a factor; what is none stays. @param {any} value @param {number} factor */
 export const times = (value, factor) => (typeof value === "number" ? value * factor : value);
 
+/** A text as the beginning of a sentence. @param {string} text */
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
 /** What a number is, with its unit in brackets if it has one.
  * @param {string} what @param {string | null | undefined} unit */
 export const withUnit = (what, unit) => (unit ? `${what} [${printed(unit)}]` : what);

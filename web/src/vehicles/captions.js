@@ -3,7 +3,7 @@
 import { NARROW } from "./layout.js";
 import { inWords } from "./naming.js";
 import { liftOf } from "./scene.js";
-import { line } from "./symbols.js";
+import { line, text } from "./symbols.js";
 
 /** @import { Layout, Motion } from "./layout.js" */
 /** @import { Moment } from "./moments.js" */
@@ -23,14 +23,11 @@ export function captions(made, moved, names) {
   const large = `drawn ${made.times} times as large`;
   const road = scene.tracks.length > 0 && scene.column ? `, the road at ${moved.passing} px a second` : "";
   const above = standing(made, moved, large);
-  if (above.length === 0) into.push(text("on earth", 12, height - 10, `heights ${large}${road}`));
-  above.forEach((words, i) => into.push(text("quiet", 12, (narrow ? 60 : 18) + 16 * i, words)));
+  if (above.length === 0) into.push(text(12, height - 10, `heights ${large}${road}`, "on earth"));
+  above.forEach((words, i) => into.push(text(12, (narrow ? 60 : 18) + 16 * i, words, "quiet")));
   if (names) into.push(...legend(made, names, narrow, above.length));
   return into;
 }
-
-/** @param {string} kind @param {number} x @param {number} y @param {string} words @returns {Shape} */
-const text = (kind, x, y, words) => ({ kind: "text", x, y, text: words, class: kind });
 
 /** Heave, pitch and roll of the body, a line each. @param {Layout} made
  * @param {{moment: Moment, motion: Motion}} moved @param {string} large @returns {string[]} */
@@ -55,7 +52,7 @@ function scaleBar({ lift, width }, narrow) {
   return [
     line([[x - 4, y], [x + 4, y]], "bar"), line([[x, y], [x, y + tall]], "bar"),
     line([[x - 4, y + tall], [x + 4, y + tall]], "bar"),
-    { kind: "text", x, y: y + tall + 15, text: `${length} mm`, class: "beside", anchor: "middle" },
+    text(x, y + tall + 15, `${length} mm`, "beside", "middle"),
   ];
 }
 
@@ -64,10 +61,8 @@ function scaleBar({ lift, width }, narrow) {
 function legend({ height, scene }, { own, other }, narrow, below) {
   const body = scene.column && scene.tracks.length > 0 ? "body on " : "";
   const y = narrow ? 62 + 16 * below : scene.column ? Math.max(112, 0.31 * height) : 20 + 16 * below;
-  const text = (/** @type {number} */ at, /** @type {string} */ words) =>
-    /** @type {Shape} */ ({ kind: "text", x: 36, y: at, text: words, class: "text" });
   const otherWords = body ? `on ${other}, same road` : `dashed: ${other}, same road`;
-  if (!scene.column) return [line([[12, y - 4], [30, y - 4]], "other trail"), text(y, otherWords)];
-  return [line([[12, y - 4], [30, y - 4]], "own"), text(y, `${body}${own}`),
-    line([[12, y + 14], [30, y + 14]], "other trail"), text(y + 18, otherWords)];
+  if (!scene.column) return [line([[12, y - 4], [30, y - 4]], "other trail"), text(36, y, otherWords)];
+  return [line([[12, y - 4], [30, y - 4]], "own"), text(36, y, `${body}${own}`),
+    line([[12, y + 14], [30, y + 14]], "other trail"), text(36, y + 18, otherWords)];
 }

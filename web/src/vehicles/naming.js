@@ -2,6 +2,7 @@
 
 import { isDrawn, point } from "./layout.js";
 import { heightOf, liftOf } from "./scene.js";
+import { text } from "./symbols.js";
 
 /** @import { Layout, PlacedBody } from "./layout.js" */
 /** @import { Moment } from "./moments.js" */
@@ -78,9 +79,3 @@ function nameWheel(made, { x, y, port, body: of, network }, moment, into) {
   if (network.kind === "element") into.push(text(beside, py + 11, `tyre ${quantity(network.value, network.unit)}`,
     "beside"));
 }
-
-/** @param {number} x @param {number} y @param {string} words @param {string} [kind]
- * @param {"start" | "middle" | "end"} [anchor] @returns {Shape} */
-export const text = (x, y, words, kind = "text", anchor = "start") =>
-  ({ kind: "text", x, y, text: words, class: kind, anchor });
-

@@ -1,9 +1,8 @@
 // Struts at work between their two ends, with the levers, arms and beams on which these are.
 
 import { point, unitOf } from "./layout.js";
-import { text } from "./naming.js";
 import { heightOf, liftOf } from "./scene.js";
-import { box, circle, draw, line, polygon, travelOf } from "./symbols.js";
+import { box, circle, draw, line, polygon, text, travelOf } from "./symbols.js";
 
 /** @import { Layout, Lever, PlacedBody, PlacedStrut } from "./layout.js" */
 /** @import { Moment } from "./moments.js" */

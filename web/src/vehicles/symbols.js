@@ -142,6 +142,11 @@ export const polygon = (points, kind) => ({ kind: "polygon", points, class: kind
 /** @param {number} x @param {number} y @param {number} r @param {string} kind @returns {Shape} */
 export const circle = (x, y, r, kind) => ({ kind: "circle", x, y, r, class: kind });
 
+/** @param {number} x @param {number} y @param {string} words @param {string} [kind]
+ * @param {"start" | "middle" | "end"} [anchor] @returns {Shape} */
+export const text = (x, y, words, kind = "text", anchor = "start") =>
+  ({ kind: "text", x, y, text: words, class: kind, anchor });
+
 /** A rectangle. @param {number} left @param {number} top @param {number} right @param {number} bottom
  * @param {string} kind @returns {Shape} */
 export const box = (left, top, right, bottom, kind) =>
@@ -160,7 +165,7 @@ function symbol(plan, x, y, long, work, into) {
   (SYMBOLS[/** @type {keyof typeof SYMBOLS} */ (plan.element)] ?? other)(at, plan, work, into);
   if (plan.name === work.chosen) for (const shape of into.slice(from)) shape.class += " chosen";
   if (!work.labels || plan.right === HALF) return;
-  into.push({ kind: "text", x: x + (HALF + 2) * s, y: y + (long + grown) / 2 + 4, text: plan.name, class: "name" });
+  into.push(text(x + (HALF + 2) * s, y + (long + grown) / 2 + 4, plan.name, "name"));
 }
 
 /** `upper` and `lower`: the middle of the symbol, as far as it moves with the upper and with the lower end.

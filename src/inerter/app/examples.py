@@ -1,0 +1,89 @@
+"""Examples of the package as a first screen shows them: each with the question that it answers, and its network."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+from inerter.app.about import examples
+from inerter.app.start import to_document
+from inerter.app.study_parts import parts_of_document
+
+Card = dict[str, Any]
+
+_OF_VEHICLES = {
+    "quarter-car": "Which strut for a quarter car?",
+    "half-car": "Two axles, one road",
+    "full-car": "Four wheels and anti-roll bars",
+    "absorber": "A vibration absorber",
+}
+_OF_SECTIONS = {  # of the file, or keys of its section `study`
+    "sweep": "Where is it worth it?",
+    "tolerance": "What if values scatter?",
+    "budgets": "How much friction or backlash is allowable?",
+    "trade_off": "What does one index cost the other?",
+    "conditions": "What is best over all operating conditions?",
+    "subject_to": "What is best within constraints?",
+}
+_OF_FREE_NETWORKS = "Which network is the best of all?"
+_ORDER = [*_OF_VEHICLES.values(), *_OF_SECTIONS.values()]
+_VEHICLES = {
+    "quarter-car": "Quarter car",
+    "half-car": "Half car",
+    "full-car": "Full car",
+    "mechanism": "Own vehicle, of masses and struts",
+}
+
+
+@lru_cache(1)
+def example_cards() -> dict[str, Any]:
+    """Studies in the order of their questions, and the name of the one to begin with a vehicle."""
+    found = [_card(name, to_document(path.name, path.read_text("utf-8"))["study"]) for name, path in examples().items()]
+    found.sort(key=lambda card: (_place(card["question"]), not _is_plain(card)))
+    asked: set[str] = set()
+    for card in found:
+        card["heading"] = card["title"] if card["question"] in asked else card["question"]
+        asked.add(card["question"])
+    return {
+        "examples": found,
+        "vehicles": [{"title": title, "name": _beginning(found, model)} for model, title in _VEHICLES.items()],
+    }
+
+
+def _card(name: str, study: Mapping[str, Any]) -> Card:
+    parts = parts_of_document(study)
+    is_free = any(layout["free_networks"] for layout in parts["layouts"].values())
+    trees = [network for network in parts["networks"] if "tree" in network]
+    title = study.get("title", name)
+    return {
+        "name": name,
+        "title": title,
+        "question": _OF_FREE_NETWORKS if is_free else _question(study) or title,
+        "study": study,
+        "tree": max(trees, key=lambda network: len(network["names"]), default={"tree": None})["tree"],
+        "kinds": {element: one["kind"] for element, one in parts["elements"].items()},
+        "is_free": is_free,
+    }
+
+
+def _question(study: Mapping[str, Any]) -> str:
+    """What a study asks beyond its designs, else what is asked of its vehicle; empty where neither is listed."""
+    keys = {*study, *study.get("study", {})}
+    asked = (question for key, question in _OF_SECTIONS.items() if key in keys)
+    return next(asked, _OF_VEHICLES.get(study["vehicle"].get("model"), ""))
+
+
+def _place(question: str) -> int:
+    return _ORDER.index(question) if question in _ORDER else len(_ORDER)
+
+
+def _is_plain(card: Card) -> bool:
+    """Whether an example is that of its vehicle, and asks nothing else."""
+    return bool(card["name"] == card["study"]["vehicle"].get("model"))
+
+
+def _beginning(cards: Sequence[Card], model: str) -> str:
+    """Name of the example of a vehicle: the plain one, else the shortest."""
+    own = [card for card in cards if card["study"]["vehicle"].get("model") == model and not card["is_free"]]
+    return str(min(own, key=lambda card: (not _is_plain(card), len(str(card["study"]))))["name"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -219,3 +220,25 @@ def test_a_method_that_is_chosen_just_before_the_page_is_drawn_anew_counts(visit
     step_slider_and(visitor, CHOOSE)
     visitor.settled()
     assert visitor.page.input_value(".answers select[aria-label=Method]") == "statistical-linearisation"
+
+
+def test_friction_at_an_inerter_is_offered_to_all_layouts_that_have_it(visitor: Visitor) -> None:
+    """Else a strut with friction is ranked among others without it. All of them are one step."""
+    page = visitor.page
+    before = json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["study"]["layouts"]
+    visitor.pick("S3")
+    page.locator(".drawing [data-name=b]").click()
+    page.get_by_role("button", name="in parallel", exact=True).click()
+    page.get_by_role("button", name="Add a friction").click()
+    visitor.wait_for_text("k | c - (b | f)")
+    page.get_by_role("button", name="Join it in all layouts with b").click()
+    kept = "() => JSON.parse(sessionStorage.getItem('inerter.document')).study.layouts"
+    joined = {"S2": "k | c | b | f", "S3": "k | c - (b | f)"}
+    page.wait_for_function(f"s2 => ({kept})().S2 === s2", arg=joined["S2"])
+    layouts = page.evaluate(kept)
+    assert {name: layouts[name] for name in joined} == joined
+    assert {name for name, text in layouts.items() if "f" not in text} == {"S1"}
+    assert all(text.count("f") == 1 for name, text in layouts.items() if name != "S1")
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_function(f"s2 => ({kept})().S2 === s2", arg=before["S2"])
+    assert page.evaluate(kept) == {**before, "S3": joined["S3"]}

@@ -3,7 +3,7 @@
 import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt, removeAt, replaceAt, shiftAt, written }
   from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
-import { isRange, own, strutsOf, textOf } from "../state/document.js";
+import { isRange, mapValues, own, strutsOf, textOf } from "../state/document.js";
 import { brief, briefIn, printed, strutWords, symbolParts } from "../state/scale.js";
 import { isFreeNetwork, kindOf, layoutsWith, selectedElement, treeOf, unitOf, wrongIn } from "../library.js";
 import { answerOf, strutTexts } from "../questions.js";
@@ -117,7 +117,8 @@ const described = (part) => (part.kind === "element" ? `${part.name} is selected
     + written(part));
 
 /** @typedef {{store: Store, api: Api, how: Joint}} Editing */
-/** @typedef {{key: string, symbol: string, example: string, quantity: string, drawing: any[]}} ElementKind */
+/** @typedef {{key: string, symbol: string, example: string, quantity: string, drawing: any[],
+ * switches: boolean}} ElementKind  `switches`: sticks, or opens */
 
 /** @param {State} state @returns {ElementKind[]} */
 const kindsOf = ({ about }) => about?.elements ?? [];
@@ -166,7 +167,33 @@ function addKind(editing, kind, by) {
   const old = by === "replace" ? selectedElement(store.get()) : null;
   const like = old !== null && kindOf(store.get(), old)?.key === kind.key;
   const entry = like ? store.get().history.present.study.elements?.[old] : kind.example;
+  const beside = by === "replace" || !kind.switches ? null : selectedElement(store.get());
   add(editing, name, { [name]: /** @type {string} */ (entry) }, by);
+  if (beside !== null) offerElsewhere(editing, beside, name);
+}
+
+/** Friction and gaps are of a device: what was joined to an element in one layout is offered to all others with it.
+ * @param {Editing} editing @param {string} beside @param {string} name */
+function offerElsewhere({ store, how }, beside, name) {
+  const state = store.get();
+  const { layout, study } = state.history.present;
+  const others = (layoutsWith(state, beside) ?? []).filter((each) => each !== layout);
+  /** @param {any} entry @returns {any} */
+  const joined = (entry) => {
+    if (typeof entry !== "string") return mapValues(entry, joined);
+    const tree = treeOf(state, entry);
+    const places = tree ? leaves(tree).filter((each) => each.name === beside) : [];
+    return tree && places.length > 0
+      ? written(places.reduceRight((next, { path }) => joinAt(next, path, how, leaf(name)), tree)) : entry;
+  };
+  if (others.length > 0) store.say(`${name} is at ${beside} of ${layout}, not of ${others.join(", ")}.`, "joined", {
+    label: `Join it in all layouts with ${beside}`,
+    act: () => {
+      for (const each of others) store.change({ type: "placed", place: ["layouts", each],
+        value: joined(own(study.layouts, each)) }, `join ${name}`);
+      store.dispatch({ type: "rested" });
+    },
+  });
 }
 
 /** @param {Store} store @param {ElementKind} kind */

@@ -123,7 +123,7 @@ def _problem_digest(of: _SameStudy, layout: str, index: str) -> str:
     def number_of(name: re.Match[str]) -> str:
         return numbers.setdefault(name[1], f"#{len(numbers)}") if name[1] in study.elements else name[0]
 
-    problem = repr((vehicle, study.resolve_index(index, layout), limits_in(study)))
+    problem = repr((vehicle, study.resolve_index(index, layout), limits_in(study, layout)))
     return hashlib.sha256(_NAME.sub(number_of, problem).encode()).hexdigest()[:16]
 
 

@@ -10,7 +10,14 @@ from typing import Any
 from inerter.app.designs import Design
 from inerter.decision.results import LimitResult
 from inerter.errors import Status, StatusKind
-from inerter.files.study.limits import StudyLimit, each_like, limited_quantity_words, limits_in, part_words
+from inerter.files.study.limits import (
+    StudyLimit,
+    cases_clause,
+    each_like,
+    limited_quantity_words,
+    limits_in,
+    part_words,
+)
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
 from inerter.formatting import format_quantity, in_words
@@ -46,13 +53,14 @@ _remembered = lru_cache(_REMEMBERED)(_estimate_index)  # a step of a slider leav
 
 @dataclass(frozen=True)
 class DesignLimit:
-    """Limit of a study at a design: in words, without its value; the quantity closest to it, and its estimate.
+    """Limit of a study at a design: in words, without its value; its side; the quantity closest to it, its estimate.
 
     `kept` is None where that is not known; `excess` is the logarithm of value over limit, towards the forbidden side.
     """
 
     limit: StudyLimit
     words: str
+    side: str
     quantity: str
     part: str
     estimate: Estimate
@@ -72,7 +80,7 @@ class DesignLimit:
             "limit": self.limit.value,
             "words": self.words,
             "quantity": self.quantity,
-            "title": f"{self.quantity} {self.limit.side}",
+            "title": f"{self.quantity} {self.side}",
             "part": self.part,
             "unit": self.limit.unit,
             "value": self.estimate.value,
@@ -84,12 +92,12 @@ class DesignLimit:
     def result(self) -> LimitResult:
         """The limit as a decision compares it."""
         message = self.estimate.status.message
-        return LimitResult(self.quantity, self.limit.side, self.text, self.kept, self.excess, message)
+        return LimitResult(self.quantity, self.side, self.text, self.kept, self.excess, message)
 
 
 def limits_at(study: Study, design: Design, name: str) -> list[DesignLimit]:
     """Limits of a study at a design, each with the value closest to it, by the method of that name."""
-    pairs = zip(study.limits, limits_in(study), strict=True)
+    pairs = zip(study.limits, limits_in(study, design.layout), strict=True)
     return [_limit(study, one, several, design.vehicle, study.method(name)) for one, several in pairs]
 
 
@@ -105,4 +113,5 @@ def _limit(study: Study, said: StudyLimit, several: list[Limit], vehicle: Vehicl
         estimate = Estimate(nan, said.unit, Status(StatusKind.FAILED, str(error)))
         part, kept, excess = "", None, inf
     each, closest_words = (limited_quantity_words(study, said.of, one) for one in (each_like(part), part))
-    return DesignLimit(said, f"{each} {in_words(said.sense)}", closest_words, part, estimate, kept, excess)
+    side = f"{said.side}{cases_clause(study, said)}"
+    return DesignLimit(said, f"{each} {in_words(said.sense)}", side, closest_words, part, estimate, kept, excess)

@@ -63,7 +63,7 @@ def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
             if (at := _infeasible_places_clause(results, name)) is not None
         ]
         neglect = neglect_clause(study, study.optimise) if study.optimise is not None else ""
-        nominal = " with nominal values" if study.tolerance else ""
+        nominal = " with nominal values" if study.tolerance and study.limit_quantile is None else ""
         computed = f", computed {neglect}" if neglect else ""
         yield f"All designs found satisfy {format_list(limits)}{nominal}{computed}.{''.join(none)}"
 

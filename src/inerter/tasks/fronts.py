@@ -42,7 +42,7 @@ class FrontPart(TaskPart["FrontAnswer"]):
 
     def compute(self, study: Study, designs: Designs, threads: int) -> FrontAnswer:
         """Pareto front of the layout."""
-        limits = all_limits(study)
+        limits = all_limits(study, self.layout)
         indices = [study.resolve_index(name, self.layout) for name in study.trade_off]
         method = study.method(str(study.optimise), threads)
         design = study.design(self.layout)

@@ -114,9 +114,13 @@ class Tolerances(Task[ToleranceAnswer]):
         return [TolerancePart(layout, index) for index in study.indices for layout in layouts]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
-        """Problems of `tolerance` and `quantile`: a quantile without tolerances, tolerances together with a sweep."""
-        if study.quantile is not None and not study.tolerance:
-            yield at(("study", "quantile"), fault="nothing scatters", expected="a tolerance, or no quantile")
+        """Problems of tolerances and quantiles: those of nothing that scatters, of no limits, together with a sweep."""
+        for key in ("quantile", "limit_quantile"):
+            if getattr(study, key) is not None and not study.tolerance:
+                yield at(("study", key), fault="nothing scatters", expected=f"a tolerance, or no {key}")
+        if study.limit_quantile is not None and not study.limits:
+            expected = "constraints in subject_to, or no limit_quantile"
+            yield at(("study", "limit_quantile"), fault="there are no constraints", expected=expected)
         if study.tolerance and study.sweeps:
             yield at(("study", "tolerance"), fault="given together with a sweep", expected="one of the two")
 

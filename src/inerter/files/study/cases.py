@@ -189,7 +189,7 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
         "evaluations": 0,
     }
     found: Optimum | None = None
-    limits = all_limits(study)
+    limits = all_limits(study, case.layout)
     searched: tuple[Status, ...] = ()  # of the search, or of the limits where there is none
     if study.optimise is not None and vehicle.free_values():
         method = study.method(study.optimise, threads)
@@ -206,11 +206,11 @@ def _run(study: Study, case: Case, threads: int) -> Outcome:
             "agreed": found.n_converged,
             "evaluations": found.evaluations,
         }
-        fields["limits"] = [list(one) for one in limit_results(study, free, found.limits)]
+        fields["limits"] = [list(one) for one in limit_results(study, case.layout, free, found.limits)]
         searched = (found.status,)
     elif study.optimise is not None and limits:
         held = constraints_at(vehicle, limits, study.method(study.optimise, threads))
-        fields["limits"] = [list(one) for one in limit_results(study, vehicle, held)]
+        fields["limits"] = [list(one) for one in limit_results(study, case.layout, vehicle, held)]
         searched = (broken(held), *(one.estimate.status for one in held))
 
     def estimate(method: str, index: str) -> Estimate:

@@ -140,7 +140,7 @@ def fixed_part(study: Study) -> Study:
 
 def _plan(study: Study, layout: str, index: str) -> SearchPlan:
     assert study.optimise is not None
-    limits = all_limits(study)
+    limits = all_limits(study, layout)
     vehicle, method = study.design(layout), study.method(study.optimise)
     return plan_search(vehicle, study.resolve_index(index, layout), method, limits, study.seed)
 
@@ -178,7 +178,7 @@ def _check_design(study: Study, layout: str) -> None:
         method = replace(study, relative_error=None).method(study.optimise)  # which would take simulations
         for name in study.indices:
             objective_of(vehicle, study.resolve_index(name, layout), method)
-        bounds_of(vehicle, all_limits(study), method)
+        bounds_of(vehicle, all_limits(study, layout), method)
 
 
 def study_notes(study: Study) -> list[str]:

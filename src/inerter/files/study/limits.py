@@ -13,7 +13,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.schema import quantity_schema
 from inerter.files.common.suggest import nearest, some
-from inerter.formatting import format_quantity, in_words
+from inerter.formatting import format_quantity, format_share, in_words
 from inerter.indices.definition import quantity_words
 from inerter.indices.names import index_names, title_with_name
 from inerter.methods.composite_index import IndexLike
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 _STIFFNESS = "static-stiffness"
 _SENSES: dict[str, Callable[[IndexLike, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
+_EQUAL = "equal"
 _PLACE = ("study", "subject_to")
 
 
@@ -209,7 +210,15 @@ def limit_words(study: Study, limit: StudyLimit) -> str:
 
 def limit_text(study: Study, limit: StudyLimit, value: str = "") -> str:
     """The limit in words, with this text for its value; without one, the value in SI units."""
-    return f"{limit_words(study, limit)} {value or limit.value_text}"
+    return f"{limit_words(study, limit)} {value or limit.value_text}{cases_clause(study, limit)}"
+
+
+def cases_clause(study: Study, limit: StudyLimit) -> str:
+    """Clause on the share of the designs within tolerances that satisfies a limit; empty without `limit_quantile`."""
+    if study.limit_quantile is None:
+        return ""
+    share = f"in {format_share(study.limit_quantile, 4)} of cases"
+    return f" {'with nominal values' if limit.sense == _EQUAL else share}"
 
 
 def is_swept(study: Study, limit: StudyLimit) -> bool:
@@ -223,17 +232,28 @@ def quantity_limited(study: Study, of: str) -> IndexLike:
     return static_stiffness(mount) if section == _STIFFNESS else study.index(of)
 
 
-def limits_in(study: Study) -> list[list[Limit]]:
-    """The limits of a study, each in all of its conditions."""
+def limits_in(study: Study, layout: str) -> list[list[Limit]]:
+    """The limits of a study for a layout, each in all of its conditions, at the quantile if the study has one."""
     return [
-        [_SENSES[limit.sense](index, limit.value) for index in study.in_each(quantity_limited(study, limit.of))]
+        [
+            _SENSES[limit.sense](study.at_quantile(index, layout, _share(study, limit)), limit.value)
+            for index in study.in_each(quantity_limited(study, limit.of))
+        ]
         for limit in study.limits
     ]
 
 
-def all_limits(study: Study) -> list[Limit]:
-    """The limits of a study in all of its conditions, in one list."""
-    return [limit for several in limits_in(study) for limit in several]
+def _share(study: Study, limit: StudyLimit) -> float | None:
+    """Probability level of the limited quantile; None for a nominal value, as that of an equality."""
+    share = study.limit_quantile
+    if share is None or limit.sense == _EQUAL:
+        return None
+    return share if _SENSES[limit.sense] is at_most else 1.0 - share
+
+
+def all_limits(study: Study, layout: str) -> list[Limit]:
+    """The limits of a study for a layout in all of its conditions, in one list."""
+    return [limit for several in limits_in(study, layout) for limit in several]
 
 
 def each_of(study: Study, limit: StudyLimit) -> str:
@@ -262,15 +282,15 @@ def part_words(vehicle: Vehicle, output: str) -> str:
 
 
 def limit_results(
-    study: Study, vehicle: Vehicle, held: tuple[ConstraintResult, ...]
+    study: Study, layout: str, vehicle: Vehicle, held: tuple[ConstraintResult, ...]
 ) -> list[tuple[float, bool, float, str]]:
     """Value closest to each limit, whether the limit is active, sensitivity to 1 % of the limit [%], and its part.
 
     The part is the tyre or strut of that value where the limit applies to each of several; else empty.
-    `held` are all limited quantities of an optimum of `vehicle`, in the order of `limits_in`.
+    `held` are all limited quantities of an optimum of `vehicle`, one of a layout, in the order of `limits_in`.
     """
     found, rest = [], list(held)
-    for several in limits_in(study):
+    for several in limits_in(study, layout):
         count = sum(len(for_each(one.of, vehicle)) for one in several)
         own, rest = rest[:count], rest[count:]
         worst = max(own, key=lambda one: one.excess)
@@ -284,7 +304,7 @@ def limited_definitions(study: Study, vehicle: Vehicle) -> list[Any]:
     """Index definitions of all limited quantities for a vehicle."""
     return [
         index.definition(case.mechanism())
-        for several in limits_in(study)
-        for limit in several
-        for case, index in constituents_of(vehicle, limit.of)
+        for limit in study.limits
+        for one in study.in_each(quantity_limited(study, limit.of))
+        for case, index in constituents_of(vehicle, one)
     ]

@@ -172,7 +172,9 @@ class RealPart(StudyPart["RealResult"]):
         layout = str(study.baseline)
         index, design = study.resolve_index(self.index, layout), study.design(layout)
         if self.method != study.optimise and design.free_values() and linear_notes(design.mechanism()):
-            return self._optimised(optimise(design, index, method, subject_to=all_limits(study), seed=study.seed))
+            return self._optimised(
+                optimise(design, index, method, subject_to=all_limits(study, layout), seed=study.seed)
+            )
         estimate = estimate_of(best_design(study, designs, layout, self.index), index, method)
         return self._result(
             value=estimate.value,

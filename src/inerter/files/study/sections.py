@@ -331,6 +331,12 @@ class Settings:
         "quantile = 0.95",
         default=None,
     )
+    limit_quantile: float | None = key(
+        SHARE,
+        "Share of the designs within the tolerances that satisfies each constraint, in place of the nominal one.",
+        "limit_quantile = 0.95",
+        default=None,
+    )
 
 
 def _of_a_trade_off(table: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -119,10 +119,13 @@ class Study(Settings):
 
     def resolve_index(self, name: str, layout: str) -> IndexLike:
         """Objective of a layout for an index: over the conditions, and at the quantile, if the study has them."""
-        index = self.over_conditions(name)
-        if self.quantile is None or not (spread := self.spread(layout)):
+        return self.at_quantile(self.over_conditions(name), layout, self.quantile)
+
+    def at_quantile(self, index: IndexLike, layout: str, share: float | None) -> IndexLike:
+        """Quantile of an index over the tolerances of a layout; the index if there are none, or for None."""
+        if share is None or not (spread := self.spread(layout)):
             return index
-        return Quantile(index, scatter_of(spread, DISTRIBUTIONS[0]), self.quantile, seed=self.seed)
+        return Quantile(index, scatter_of(spread, DISTRIBUTIONS[0]), share, seed=self.seed)
 
     def objective_title(self, name: str) -> str:
         """Title of the index of that name as it is minimised: over the conditions, and at the quantile, if any."""

@@ -9,7 +9,7 @@ import pytest
 
 import inerter as it
 from inerter.identification.experiment import experiment_of
-from inerter.identification.passed_noise import is_one_tone, passed_noise
+from inerter.identification.passed_noise import passed_noise, tones_of
 from inerter.identification.statements.identifiability import Verdict
 
 TRUTH = {"ks": 2.379e6, "cs": 10974.0, "b": 41.49}
@@ -46,10 +46,12 @@ def test_one_tone_without_the_bandwidth_of_the_load_cell_gives_no_wrong_value() 
 
 def test_one_tone_is_told_from_two_and_from_a_sweep() -> None:
     tone = it.cosine(6e-4, 2.3)
-    assert is_one_tone(experiment_of(RIG.run(tone, 3.0)))
-    assert is_one_tone(experiment_of(RIG.run(tone, 1.1)))  # two periods and a half
-    assert not is_one_tone(experiment_of(RIG.run(tone + it.cosine(6e-5, 5.1), 3.0)))
-    assert not is_one_tone(experiment_of(RIG.run(it.chirp(2e-4, 2.0, 3.0, 3.2), 3.0)))
+    assert tones_of(experiment_of(RIG.run(tone, 3.0))) == 1
+    assert tones_of(experiment_of(RIG.run(tone, 1.1))) == 1  # two periods and a half
+    assert tones_of(experiment_of(RIG.run(tone + it.cosine(6e-5, 5.1), 3.0))) == 2
+    assert tones_of(experiment_of(RIG.run(tone + it.cosine(3e-4, 3.4), 3.0))) == 2
+    assert tones_of(experiment_of(RIG.run(it.chirp(2e-4, 2.0, 3.0, 3.2), 3.0))) is None
+    assert tones_of(experiment_of(RIG.run(tone + it.cosine(3e-4, 3.4) + it.cosine(2e-4, 6.1), 3.0))) is None
 
 
 @pytest.mark.campaign
@@ -62,6 +64,19 @@ def test_four_unknowns_of_one_tone_have_no_values() -> None:
     )  # fmt: skip
     known = rig.run(it.cosine(3.5e-4, 14.0), 2.0)
     fit = it.identify(it.Record(known.time, known.displacement, known.force), "elastic", starts=16)
+    assert not any(fit.identifiable.values())
+
+
+@pytest.mark.campaign
+def test_five_unknowns_of_two_tones_in_motion_have_no_values() -> None:
+    """Four equations, for where a record begins in motion its start is not compared."""
+    device = (it.Spring(9.13e5) | it.Damper(634.0)) - (it.Inerter(118.0) | it.Damper(321.0))
+    rig = it.VirtualRig(
+        device, seed=0, sampling=360.0, encoder_noise=9e-8, encoder_resolution=0.0, force_noise=0.0034,
+        force_resolution=0.0, force_bandwidth=184.0, force_range=1e5,
+    )  # fmt: skip
+    known = rig.run(it.cosine(2.5e-4, 3.08) + it.cosine(6e-5, 5.73), 3.8, start=1.5)
+    fit = it.identify(it.Record(known.time, known.displacement, known.force), "elastic-viscous", starts=16)
     assert not any(fit.identifiable.values())
 
 

@@ -11,6 +11,7 @@ interval that does not contain the values of all of them is one of the noise.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -31,7 +32,7 @@ from inerter.records.filtering import gain
 Matrix = NDArray[np.float64]
 _FACTORS = np.exp([-3.6, -2.4, -1.2, 1.2, 2.4, 3.6])  # of a value, from where other fits are sought
 _ELSEWHERE, _EVALUATIONS, _ACCURACY = 3, 12, 1e-5  # other fits: number, evaluations, relative change that ends them
-_OF_ONE_TONE, _BESIDE = 3, 0.05  # most values that one tone gives, with its start; share of other motion beside it
+_MOST_TONES, _BESIDE = 2, 0.05  # tones that are counted; share of other motion beside them
 _AS_GOOD = 2.0  # rise of the cost up to which another fit is as good, as at the ends of an interval of 95 %
 
 
@@ -62,7 +63,8 @@ def decided_by_noise(
 ) -> NDArray[np.bool_]:
     """Mask of the values whose intervals do not contain those of every fit with weights by the passed noise.
 
-    A tone is two numbers, and its start gives hardly more than a third: more unknowns than that all depend on noise.
+    A tone is two values, and a start from rest gives hardly more than one: more unknowns than these all depend on
+    noise.
 
     None for a device with friction or gaps, which passes more at some instants than at others.
     """
@@ -70,7 +72,7 @@ def decided_by_noise(
     none = np.zeros(point.size, dtype=bool)
     if not all(element.plain and element.switch is None for element in problem.rig.device.elements()):
         return none
-    if point.size > _OF_ONE_TONE and len(problem.experiments) == 1 and is_one_tone(problem.experiments[0]):
+    if len(problem.experiments) == 1 and point.size > _equations(problem.experiments[0]):
         return ~none
     by_noise = replace(problem, spectra=tuple(passed_noise(e) for e in problem.experiments))
     forces, left = problem.forces(point), noise_residuals(problem, point, (seed, 1))
@@ -86,23 +88,41 @@ def decided_by_noise(
     return np.asarray(np.any((points < ends[:, 0]) | (points > ends[:, 1]), axis=0))
 
 
-def is_one_tone(e: Experiment) -> bool:
-    """Whether the compared motion is one sine, but for a small share of its r.m.s. value."""
+def _equations(e: Experiment) -> float:
+    """Number of values that a record gives at most: two of each tone, and hardly more than one of a start from rest."""
+    tones = tones_of(e)
+    return math.inf if tones is None else 2 * tones + int(e.kept[0])
+
+
+def tones_of(e: Experiment) -> int | None:
+    """Number of sines that the compared motion is, but for a small share of its r.m.s. value; None of more than two."""
     moved, time = e.motion.displacement[e.kept], e.record.time[e.kept]
-    moved = moved - np.mean(moved)
     padded = next_fast_len(8 * moved.size, real=True)
-    lines = np.abs(np.fft.rfft(moved * np.hanning(moved.size), padded))
     line = 1.0 / (padded * e.record.interval)
-    highest = float(np.argmax(lines)) * line
+    columns = np.ones((time.size, 1))
+    for number in range(1, _MOST_TONES + 1):
+        left = _remainder(moved, columns)
+        highest = float(np.argmax(np.abs(np.fft.rfft(left * np.hanning(left.size), padded)))) * line
+        ends = max(highest - 8.0 * line, 0.1 * line), highest + 8.0 * line
+        least = minimize_scalar(
+            lambda frequency, known=columns: float(np.std(_remainder(moved, _with_tone(known, time, frequency)))),
+            bounds=ends,
+            method="bounded",
+            options={"xatol": 1e-3 * line},
+        )
+        if float(least.fun) < _BESIDE * float(np.std(moved)):
+            return number
+        columns = _with_tone(columns, time, float(least.x))
+    return None
 
-    def left(frequency: float) -> float:
-        phase = 2.0 * np.pi * frequency * time
-        columns = np.column_stack([np.cos(phase), np.sin(phase), np.ones(time.size)])
-        return float(np.std(moved - columns @ np.linalg.lstsq(columns, moved)[0]))
 
-    ends = max(highest - 8.0 * line, 0.1 * line), highest + 8.0 * line
-    least = minimize_scalar(left, bounds=ends, method="bounded", options={"xatol": 1e-3 * line})
-    return float(least.fun) < _BESIDE * float(np.std(moved))
+def _with_tone(columns: Matrix, time: Matrix, frequency: float) -> Matrix:
+    phase = 2.0 * np.pi * frequency * time
+    return np.column_stack([columns, np.cos(phase), np.sin(phase)])
+
+
+def _remainder(values: Matrix, columns: Matrix) -> Matrix:
+    return np.asarray(values - columns @ np.linalg.lstsq(columns, values)[0])
 
 
 def _fits_as_good(problem: FitProblem, optimum: BestFit) -> Matrix:

@@ -20,7 +20,7 @@ from inerter.networks.elements import Network
 
 Matrix = NDArray[np.float64]
 Values = Mapping[str, float]
-GAIN, DELAY = "sensor gain", "sensor delay"
+GAIN, DELAY, LOAD_CELL = "sensor gain", "sensor delay", "load cell bandwidth"
 LONGEST_DELAY = 0.02  # [s] that is searched
 _GAINS = (0.5, 2.0)
 _BANDWIDTHS = (5.0, 5e3)  # [Hz]
@@ -127,20 +127,19 @@ def load_cell() -> Hypothesis:
 
     Friction that reverses between two samples is not resolved by a filter of the samples.
     """
-    name = "load cell bandwidth"
-    unknown = Unknown(name, "Hz", *_BANDWIDTHS, 100.0)
+    unknown = Unknown(LOAD_CELL, "Hz", *_BANDWIDTHS, 100.0)
 
     def change_motion(e: Experiment, values: Values) -> Experiment:
         if e.record.force_bandwidth is not None:
             return e
-        return replace(e, record=replace(e.record, force_bandwidth=values[name]))
+        return replace(e, record=replace(e.record, force_bandwidth=values[LOAD_CELL]))
 
     return Hypothesis(
         Suspect.FILTERED_FORCE,
         (unknown,),
         change_motion=change_motion,
-        details=lambda values: {"time": 0.5 / math.pi / values[name], "unstated": True},
-        starts=tuple({name: bandwidth, DELAY: 0.0} for bandwidth in (60.0, 250.0)),  # for a delay stood for it
+        details=lambda values: {"time": 0.5 / math.pi / values[LOAD_CELL], "unstated": True},
+        starts=tuple({LOAD_CELL: bandwidth, DELAY: 0.0} for bandwidth in (60.0, 250.0)),  # for a delay stood for it
     )
 
 

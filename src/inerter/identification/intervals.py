@@ -160,6 +160,14 @@ class CostProfile:
         lower, upper = (replace(side, end=side.end + by) if side.known else side for side in (self.lower, self.upper))
         return CostProfile(lower, upper, tuple((x + by, rise) for x, rise in self.points), self.better)
 
+    def widen(self, by: float) -> CostProfile:
+        """The profile with the end towards another value shifted as far as it is; ends at bounds are kept."""
+        return replace(
+            self,
+            lower=replace(self.lower, end=self.lower.end + min(by, 0.0) * self.lower.known),
+            upper=replace(self.upper, end=self.upper.end + max(by, 0.0) * self.upper.known),
+        )
+
 
 def profiles(problem: FitProblem, optimum: BestFit, among: Sequence[int] | None = None) -> list[CostProfile]:
     """The profile of every coordinate, or of those `among` them."""

@@ -26,6 +26,7 @@ from inerter.identification.scales import ScaleEffects, scale_effects
 from inerter.identification.search import QUICK, THOROUGH, basin_hopping, robust_sum, search
 from inerter.identification.sensors import noise_residuals, unavoidable_residual
 from inerter.identification.sticking import Adhesion, profiles_at_rest, with_adhesion
+from inerter.identification.unstated_bandwidth import with_filter
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
@@ -94,6 +95,8 @@ def solve(
     optimum, found = _profile_all(problem, drawn.optimum, adhesion)
     report("errors of the sensors", 0, 1)
     optimum, found = _remove_bias(problem, optimum, found, drawn.bias)
+    if asked.delay is None and not adhesion:
+        found = with_filter(problem, optimum, found)
     checked = tuple(check_parts(problem.experiments, whole, leads))
     judge = noise_reference(problem, optimum.point, checked, asked.seed)
     if judge is None:

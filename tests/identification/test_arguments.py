@@ -51,6 +51,22 @@ def test_samples_that_count_twice_are_refused(kind: str, tmp_path: Path) -> None
             call_it([first, between, again])
 
 
+def test_times_in_a_wrong_unit_are_warned_of_before_a_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    def begin(*arguments: object) -> None:
+        raise IdentificationError("begun")
+
+    monkeypatch.setattr("inerter.identification.identify.solution_of", begin)
+    monkeypatch.setattr("inerter.identification.choice.solution_of", begin)
+    in_ms = replace(recorded(1), time=1e3 * TIME)
+    for fit in (lambda: it.identify(in_ms, "ideal"), lambda: select_model(in_ms, ["ideal"])):
+        with (
+            pytest.raises(IdentificationError, match="begun"),
+            pytest.warns(UserWarning, match=r"bench.csv: The motion is implausibly slow.*units={'time': 'ms'}") as told,
+        ):
+            fit()
+        assert told[0].filename == __file__
+
+
 def test_records_of_one_motion_count_each() -> None:
     """The same motion again has other noise; two halves share no time, and a rest before the motion tells nothing."""
     whole, still = recorded(1), np.zeros(TIME.size)

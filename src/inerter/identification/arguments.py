@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from difflib import get_close_matches
 from itertools import combinations
@@ -11,6 +12,7 @@ import numpy as np
 from inerter.errors import IdentificationError
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Network
+from inerter.records.inspection import questionable_units
 from inerter.records.record import Record
 
 _FEWEST = 4  # samples of two records at the same times that show that they are the same
@@ -36,6 +38,13 @@ def checked_records(records: object) -> list[Record]:
                 f"count twice and make the intervals too narrow. Leave one of them out."
             )
     return given
+
+
+def warn_of_units(records: Sequence[Record]) -> None:
+    """Warn of records whose units may be wrong, before a fit that may then take hours."""
+    for record in records:
+        for finding in questionable_units(record):
+            warnings.warn(f"{record.source}: {finding.sentence}", UserWarning, stacklevel=3)
 
 
 def share_samples(one: Record, other: Record) -> bool:

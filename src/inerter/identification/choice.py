@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError, Status, StatusKind
-from inerter.identification.arguments import checked_records, model_of
+from inerter.identification.arguments import checked_records, model_of, warn_of_units
 from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.identify import solution_of
@@ -122,6 +122,7 @@ def select_model(
     asked = options.replace(**changes)
     given = _models_by_name(models)
     records = checked_records(records)
+    warn_of_units(records)
     if not asked.check > 0.0:
         raise IdentificationError(f"check: candidates are compared on validation data; got {asked.check!r}.")
     selection = _Selection(records, asked, len(given) + (2 if models is None else 0), progress)

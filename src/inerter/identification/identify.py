@@ -10,7 +10,7 @@ from typing import Unpack
 from inerter.errors import IdentificationError
 from inerter.formatting import format_quantity
 from inerter.identification import hypotheses
-from inerter.identification.arguments import checked_records, model_of
+from inerter.identification.arguments import checked_records, model_of, warn_of_units
 from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.models import with_mount
@@ -60,7 +60,7 @@ def identify(
     See docs/identification.md.
 
     Raises `IdentificationError` for a model without free values or invalid options, and `RecordError` for records that
-    cannot be used.
+    cannot be used. Warns, before the fit, of records whose units may be wrong.
 
     >>> import inerter as it
     >>> rig = it.VirtualRig(it.Inerter(113.0) | it.Friction(10.0), sampling=500.0)
@@ -70,9 +70,11 @@ def identify(
     (True, True)
     """
     asked = options.replace(**changes)
+    given, device = checked_records(records), model_of(model)
+    warn_of_units(given)
     with running_on(executor) as pool:
         prepare_on(pool, KERNELS)
-        fit = fit_of(solution_of(records, model_of(model), asked, part(progress, 0.0, _SOLVED)))
+        fit = fit_of(solution_of(given, device, asked, part(progress, 0.0, _SOLVED)))
     if progress is not None:
         progress(1.0)
     return fit

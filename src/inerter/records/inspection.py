@@ -52,6 +52,12 @@ def findings(record: Record) -> list[Finding]:
     return [finding for group in by_severity(found).values() for finding in group]
 
 
+def questionable_units(record: Record) -> list[Finding]:
+    """Findings of sizes, and of accelerations of an even record in motion, that a wrong unit explains better."""
+    moves = record.uniform and not _constant(record)
+    return [*_implausible_sizes(record), *(_time_scale(record, smooth_displacement(record)) if moves else ())]
+
+
 def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [

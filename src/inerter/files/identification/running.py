@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -127,7 +128,8 @@ def run_identification(
 
     Raises what `identify` raises.
     """
-    with running_on(executor):
+    with running_on(executor), warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # of units: findings of the readings, which their reader shows
         return _identify(readings, request, progress)
 
 

@@ -224,6 +224,15 @@ def test_what_cannot_be_exported_is_one_sentence(
     assert {path.name for path in folder.iterdir()} == before
 
 
+def test_an_option_is_refused_before_any_search(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("inerter.cli.export.chosen_design", None)
+    assert folder.is_dir()
+    assert call(["export", "car.toml", "--to", "fmu", "--index", "J1", "--speed", "20"]) == 2
+    assert '--speed: Got "20": unit missing' in capsys.readouterr().err
+
+
 def test_a_point_of_a_sweep(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     swept = REAL.replace('baseline = "S3"', 'baseline = "S3"\nsweep = { k = ["60 kN/m", "90 kN/m"] }')
     (folder / "sweep.toml").write_text(swept, encoding="utf-8")

@@ -38,6 +38,7 @@ def export(
 ) -> None:
     """Export a design of a study file or of a folder of results to a file, with `options` of `ExportSpec`."""
     kind, part = _kind(to), options["part"]
+    delayed = None if speed is None else positive_option("speed", speed, "m/s")
     if output is not None:
         check_suffix(kind, output)
         check_single(output, by=_BY, inputs=(), force=force)
@@ -55,7 +56,7 @@ def export(
             design.vehicle(),
             to,
             **options,
-            speed=None if speed is None else positive_option("speed", speed, "m/s"),
+            speed=delayed,
             indices=indices,
             conventions=design.study.conventions,
             title=", ".join(filter(None, titles)),

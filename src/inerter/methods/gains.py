@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.integrate import trapezoid
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.formatting import format_number
@@ -71,7 +71,8 @@ class LinearModel:
         """
         beyond = (omega[-1] + 0.5 * omega[0]) * np.logspace(0.0, _DECADES, _ABOVE)
         density = self.squares(beyond) * beyond
-        squares = (trapezoid(density, np.log(beyond), axis=1) + density[:, -1]) / np.pi  # at the end as 1 / omega^2
+        end = density[:, -1]  # beyond the last frequency the squares fall as 1 / omega^2
+        squares = (scipy.integrate.trapezoid(density, np.log(beyond), axis=1) + end) / np.pi
         inside = omega[0] / np.pi * gains.sum(axis=1)
         return float(np.max(squares / np.maximum(inside, 1e-300))), np.asarray(squares)
 

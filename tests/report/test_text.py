@@ -1,8 +1,10 @@
 """Tables for the terminal: plain, narrow, and with all the numbers."""
 
 import math
+import re
 
 import pytest
+import xarray as xr
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 from synthetic import LONG, TITLES, designs, improved, judged, sweep, terminal_text, with_value
@@ -282,3 +284,18 @@ def test_rows_that_share_a_label_are_told_apart_in_every_part_of_a_table():
         assert [line.split() for line in lines if limit in line] == [
             ["S1", *limit.split(), *words.split()] for words in (effect, "some more words")
         ]
+
+
+def test_a_terminal_has_the_values_of_a_sweep_where_improvements_are_largest_and_smallest() -> None:
+    """Below each improvement the value of the index at that place, of the layout that has it."""
+    results = sweep()
+    better = results["improvement"] * xr.DataArray([0.5, 1.0, 0.2, 0.8, 0.7], dims="k")
+    text = terminal_text(results.assign(improvement=better.transpose(*results["improvement"].dims)))
+    lines = text.splitlines()
+    for index, unit in (("J1", "m/s^2"), ("J3", "N")):
+        for name in ("S2", "S3"):
+            values = results["value"].sel(layout=name, index=index).values.ravel()
+            expected = pytest.approx([values[1], values[2]], rel=1e-3)  # at 60 and 120 kN/m
+            shown = [[float(number) for number in re.findall(rf"(\S+) {re.escape(unit)}", line)] for line in lines]
+            assert any(numbers == expected for numbers in shown), (shown, expected)
+    assert re.search(r"S2 +\+6\.0 % at 60 kN/m +\+1\.2 % at 120 kN/m", text)

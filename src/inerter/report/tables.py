@@ -135,24 +135,26 @@ def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> Quantity:
 
 
 def extreme_tables(results: xr.Dataset) -> list[Table]:
-    """Tables of the best and the worst of every layout over the sweep, one per index: a summary of its tables."""
+    """Tables of the best and the worst of every layout over the sweep, one per index: a summary of its tables.
+
+    Compared with a baseline these are the improvements, with the values of the index there.
+    """
     results = one_method(results)
     return [_extreme_table(results, index) for index in indices(results)]
 
 
 def _extreme_table(results: xr.Dataset, index: str) -> Table:
     versus = is_compared(results, index)
-    values, unit = results["improvement" if versus else "value"].sel(index=index), index_unit(results, index)
+    data, unit = results.sel(index=index), index_unit(results, index)
     rows = []
     for name in compared_layouts(results) if versus else layouts(results):
-        ends = extremes(values.sel(layout=name)) or ((np.nan, {}),) * 2
-        texts = [
-            f"{format_percent(value) if versus else format_quantity(value, unit)} at {place_text(results, at)}"
-            if at
-            else ""
-            for value, at in ends
-        ]
-        cells = [Cell(text or None) for text in (texts[::-1] if versus else texts)]
+        design = data.sel(layout=name)
+        ends = list(extremes(design["improvement" if versus else "value"]) or ())
+        cells = [Cell(), Cell()]
+        for place, (value, at) in enumerate(ends[::-1] if versus else ends):
+            text = format_percent(value) if versus else format_quantity(value, unit)
+            remark = str(design_quantity(design.sel(at), unit)) if versus else ""
+            cells[place] = Cell(f"{text} at {place_text(results, at)}", remark)
         rows.append(Row([Cell(name), *cells], status=_first_problem(results, name, index)))
     than = f", compared with {results.attrs['baseline']}" if versus else ""
     over = f"over {' and '.join(swept_words(results))}"

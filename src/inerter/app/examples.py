@@ -9,15 +9,10 @@ from typing import Any
 from inerter.app.about import examples
 from inerter.app.start import to_document
 from inerter.app.study_parts import parts_of_document
+from inerter.vehicle.registry import VEHICLES
 
 Card = dict[str, Any]
 
-_OF_VEHICLES = {
-    "quarter-car": "Which strut for a quarter car?",
-    "half-car": "Two axles, one road",
-    "full-car": "Four wheels and anti-roll bars",
-    "absorber": "A vibration absorber",
-}
 _OF_SECTIONS = {  # of the file, or keys of its section `study`
     "sweep": "Where is it worth it?",
     "tolerance": "What if values scatter?",
@@ -27,13 +22,7 @@ _OF_SECTIONS = {  # of the file, or keys of its section `study`
     "subject_to": "What is best within constraints?",
 }
 _OF_FREE_NETWORKS = "Which network is the best of all?"
-_ORDER = [*_OF_VEHICLES.values(), *_OF_SECTIONS.values()]
-_VEHICLES = {
-    "quarter-car": "Quarter car",
-    "half-car": "Half car",
-    "full-car": "Full car",
-    "mechanism": "Own vehicle, of masses and struts",
-}
+_OWN_VEHICLE = {"mechanism": "Own vehicle, of masses and struts"}
 
 
 @lru_cache(1)
@@ -45,9 +34,11 @@ def example_cards() -> dict[str, Any]:
     for card in found:
         card["heading"] = card["title"] if card["question"] in asked else card["question"]
         asked.add(card["question"])
+    models = {key: key.replace("-", " ").capitalize() for key, model in VEHICLES.items() if model.moved == "road"}
+    beginnings = {title: _beginning(found, model) for model, title in (models | _OWN_VEHICLE).items()}
     return {
         "examples": found,
-        "vehicles": [{"title": title, "name": _beginning(found, model)} for model, title in _VEHICLES.items()],
+        "vehicles": [{"title": title, "name": name} for title, name in beginnings.items() if name is not None],
     }
 
 
@@ -71,11 +62,14 @@ def _question(study: Mapping[str, Any]) -> str:
     """What a study asks beyond its designs, else what is asked of its vehicle; empty where neither is listed."""
     keys = {*study, *study.get("study", {})}
     asked = (question for key, question in _OF_SECTIONS.items() if key in keys)
-    return next(asked, _OF_VEHICLES.get(study["vehicle"].get("model"), ""))
+    model = VEHICLES.get(study["vehicle"].get("model"))
+    return next(asked, model.question if model else "")
 
 
 def _place(question: str) -> int:
-    return _ORDER.index(question) if question in _ORDER else len(_ORDER)
+    """Vehicles come first, then sections of a study, then other questions."""
+    order = [*(model.question for model in VEHICLES.values() if model.question), *_OF_SECTIONS.values()]
+    return order.index(question) if question in order else len(order)
 
 
 def _is_plain(card: Card) -> bool:
@@ -83,7 +77,8 @@ def _is_plain(card: Card) -> bool:
     return bool(card["name"] == card["study"]["vehicle"].get("model"))
 
 
-def _beginning(cards: Sequence[Card], model: str) -> str:
-    """Name of the example of a vehicle: the plain one, else the shortest."""
+def _beginning(cards: Sequence[Card], model: str) -> str | None:
+    """Name of the example of a vehicle: the plain one, else the shortest; None without one."""
     own = [card for card in cards if card["study"]["vehicle"].get("model") == model and not card["is_free"]]
-    return str(min(own, key=lambda card: (not _is_plain(card), len(str(card["study"]))))["name"])
+    nearest = sorted(own, key=lambda card: (not _is_plain(card), len(str(card["study"]))))
+    return str(nearest[0]["name"]) if nearest else None

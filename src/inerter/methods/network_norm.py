@@ -356,6 +356,6 @@ def norms_over_strut(vehicle: Vehicle, index: Index, points: Mapping[str, Array]
     if over is None:
         return None
     count = next(iter(points.values())).size
-    values: Array = over.values(np.array([points[name] for name in over.names]).reshape(-1, count).T)
+    values: Array = over.values(np.array([points[name] for name in over.names]).reshape(len(over.names), count).T)
     values[np.isinf(values)] = np.nan
     return values

@@ -44,6 +44,7 @@ class Absorber(VehicleModel):
         default=0.0, metadata=quantity("N s/m", "Support damping.", "100 N s/m", may_be_free=True)
     )
     key: ClassVar[str] = "absorber"
+    question: ClassVar[str] = "A vibration absorber"
     moved: ClassVar[str] = "primary_force"
     forces: ClassVar[Mapping[str, str]] = {"primary_force": "N"}
 

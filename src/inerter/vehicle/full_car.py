@@ -100,6 +100,7 @@ class FullCar(VehicleModel):
         default=None, metadata=mount("Anti-pitch network between front and rear travel, on each side.")
     )
     key: ClassVar[str] = "full-car"
+    question: ClassVar[str] = "Four wheels and anti-roll bars"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m", "roll_moment": "N m"}
 
     def mechanism(self) -> Mechanism:

@@ -66,6 +66,7 @@ class HalfCar(VehicleModel):
     front: Network = field(metadata=mount("Between body and front wheel."))
     rear: Network = field(metadata=mount("Between body and rear wheel."))
     key: ClassVar[str] = "half-car"
+    question: ClassVar[str] = "Two axles, one road"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m"}
 
     def mechanism(self) -> Mechanism:

@@ -64,6 +64,7 @@ class VehicleModel:
     key: ClassVar[str]
     moved: ClassVar[str] = "road"  # default input of a signal: this, a force, or "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
+    question: ClassVar[str] = ""  # that an example of it answers, on a first screen
 
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)

@@ -2,6 +2,7 @@
 // when the server has read it. What is no quantity of that unit changes nothing, and its sentence stands at the field.
 
 import { unitKey } from "./questions.js";
+import { panelOf } from "./state/answers.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { Store, State } from "./state/store.js" */
@@ -31,12 +32,14 @@ function isOf({ quantities }, unit, before, text) {
   return units.includes(apart.unit) || quantities[unitKey(apart.unit, unit)]?.value !== undefined;
 }
 
-/** Why nothing was taken over from a field; empty where nothing is wrong. @param {State} state @param {string} id */
-export const wronglyTyped = ({ typed, answers }, id) =>
-  (typed?.id === id ? (typed.sentence ?? refusalOf(answers.typed)) : "");
+/** What was typed into a field and is not taken over. @param {State} state @param {string} id */
+const typedInto = ({ typed }, id) => typed.find((each) => each.id === id);
 
-/** @param {import("./state/answers.js").Answers | undefined} answers */
-const refusalOf = (answers) => answers?.kept[0]?.sentence ?? "";
+/** Why nothing was taken over from a field; empty where nothing is wrong. @param {State} state @param {string} id */
+export function wronglyTyped(state, id) {
+  const typed = typedInto(state, id);
+  return typed ? (typed.sentence ?? state.answers[panelOf(typed)]?.kept[0]?.sentence ?? "") : "";
+}
 
 /** Whether the server is reading what was typed into a field. @param {State} state @param {string} id */
-export const isBeingRead = (state, id) => state.typed?.id === id && wronglyTyped(state, id) === "";
+export const isBeingRead = (state, id) => typedInto(state, id) !== undefined && wronglyTyped(state, id) === "";

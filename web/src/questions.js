@@ -1,7 +1,7 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
 import { isQuick, isSearched, judging, layoutsWith, numbersOf } from "./library.js";
-import { shownOf, soughtIn } from "./state/answers.js";
+import { panelOf, shownOf, soughtIn } from "./state/answers.js";
 import { entryAt, indicesIn, isRange, mapValues, own } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
@@ -123,15 +123,15 @@ const ROWS = [
   },
   (state) => (state.view.tab === "compare" ? comparison(state) : []),
   unitsOf,
-  typedText,
+  typedTexts,
 ];
 
-/** Whether what was typed into a field is a quantity of its unit. @param {State} state @returns {Row[]} */
-function typedText({ typed }) {
-  if (typed === null || typed.sentence !== undefined) return [];
-  const { text, unit } = typed;
-  return [{ panel: "typed", path: "quantity", body: { text, unit },
-    learnt: ({ sentence }) => ({ type: "read", typed, sentence }) }];
+/** Whether what was typed into each field is a quantity of its unit. @param {State} state @returns {Row[]} */
+function typedTexts({ typed }) {
+  return typed.filter(({ sentence }) => sentence === undefined).map((each) => ({
+    panel: panelOf(each), path: "quantity", body: { text: each.text, unit: each.unit },
+    learnt: ({ sentence }) => ({ type: "read", typed: each, sentence }),
+  }));
 }
 
 /** What is drawn beside the design that is edited and the baseline. @param {State} state @returns {Choice[]} */

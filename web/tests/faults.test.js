@@ -63,7 +63,7 @@ function typedInto(text) {
 const damper = (store) => entryAt(store.get().history.present.study, ["elements", "c"]);
 
 /** @param {any} store */
-const asked = (store) => questions(store.get()).find(({ panel }) => panel === "typed");
+const asked = (store) => questions(store.get()).find(({ panel }) => panel === "typed elements.c");
 
 for (const text of ["2 kN s/m", "300 N s/m"]) {
   test(`${text} is taken over at once`, () => {
@@ -97,6 +97,47 @@ for (const text of ["5 kg", "12 furlong", "much", "7", "9 lbf s/ft"]) {
     assert.equal(damper(store), FIELD.before);
   });
 }
+
+const MASS = { turn: 1, id: "elements.b", unit: "kg", before: "1 kg" };
+
+/** What is typed into the field of the inerter. @param {any} store @param {string} text */
+const typeMass = (store, text) => enter(store, MASS, text, { type: "placed", place: ["elements", "b"], value: text });
+
+/** The library knows all that was typed, what was typed last first. @param {any} store */
+function readAll(store) {
+  for (const { path, learnt } of questions(store.get()).reverse()) {
+    if (path === "quantity" && learnt) store.dispatch(/** @type {any} */ (learnt({ value: 3 })));
+  }
+}
+
+for (const mass of ["5 kg", "5 lb"]) {
+  test(`what is being read is not lost where ${mass} is typed into another field`, () => {
+    const store = typedInto("9 lbf s/ft");
+    typeMass(store, mass);
+    store.change({ type: "selected", layout: "S2" });
+    readAll(store);
+    assert.deepEqual(store.get().history.present.study.elements, { c: "9 lbf s/ft", b: mass });
+  });
+}
+
+test("what is typed next into the same field is the one that counts", () => {
+  for (const next of ["2 kN s/m", "8 lbf s/ft"]) {
+    const store = typedInto("9 lbf s/ft");
+    enter(store, FIELD, next, { type: "placed", place: ["elements", "c"], value: next });
+    readAll(store);
+    assert.equal(damper(store), next);
+  }
+});
+
+test("what is being read is undone first", () => {
+  const store = typedInto("2 kN s/m");
+  typeMass(store, "5 lb");
+  store.dispatch({ type: "undone" });
+  readAll(store);
+  assert.deepEqual(store.get().history.present.study.elements, { c: "2 kN s/m", b: "1 kg" });
+  store.dispatch({ type: "undone" });
+  assert.equal(damper(store), FIELD.before);
+});
 
 test("what was typed for a study is not taken over into another one that came meanwhile", () => {
   const store = createStore();

@@ -15,6 +15,9 @@ import { takenApart } from "./scale.js";
 
 const MOST = 8; // answers of a panel that are kept, so that undoing finds them again
 
+/** The panel that has the answer to what was typed into a field. @param {{id: string}} field */
+export const panelOf = ({ id }) => `typed ${id}`;
+
 /** @type {Answers} */
 const NOTHING = { kept: [], underWay: null, recent: false };
 

@@ -1,7 +1,7 @@
 // All state in one place. What happens is dispatched, `reduce` gives the next state, and who subscribed is told;
 // nothing else changes anything.
 
-import { answered, asked, turned } from "./answers.js";
+import { answered, asked, panelOf, turned } from "./answers.js";
 import { after, empty, isChange, without } from "./document.js";
 import { canonical } from "../network/algebra.js";
 import { beginning, changed, redone, rested, undone } from "./history.js";
@@ -29,12 +29,12 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** `sought`: what was last asked by a button of a panel, beside the design. `choosing`: the study whose free values
  * are being chosen just now. `parts`: what the library last said that a study is made of; `trees`: networks that are
  * known, by their texts. `turn`: how many documents have taken the place of another one. `lit`: the element that is
- * pointed at; `typed`: what was typed into a field, and is not taken over.
+ * pointed at; `typed`: what was typed into fields, one each, and is not taken over.
  * @typedef {{history: DocumentHistory, answers: {[panel: string]: Answers}, sought: {[panel: string]: any},
  * choosing: Study | null, work: {[id: string]: Job}, quantities: {[key: string]: {value?:
  * number, sentence?: string}}, parts: Parts | null, trees: {[text: string]: Tree}, turn: number,
  * lit: string | null, records: any[], view: View,
- * about: any, connection: Connection, messages: Message[], typed: Typed | null}} State */
+ * about: any, connection: Connection, messages: Message[], typed: Typed[]}} State */
 
 /** @typedef {{type: "changed", change: Change, gesture: string | null}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
@@ -70,7 +70,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 export const initial = () => ({
   history: beginning(empty()), answers: {}, sought: {}, choosing: null, work: {}, quantities: {},
   parts: null, trees: {}, turn: 0, lit: null, records: [], about: null, connection: "connecting", messages: [],
-  typed: null,
+  typed: [],
   view: {
     path: [], tab: "response", theme: "auto", method: "", index: "", speed: 0.5, playing: true,
     compared: null, against: "", seconds: 10, seed: 0, output: "", across: false, tall: false, ghosts: [], response: "",
@@ -83,17 +83,23 @@ const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another 
 /** The state with another document in it: nothing that was said or answered of the one before is about it.
  * @param {State} state @param {DocumentHistory} history @returns {State} */
 const elsewhere = (state, history) =>
-  ({ ...state, history, turn: state.turn + 1, answers: turned(state.answers), messages: [], typed: null });
+  ({ ...state, history, turn: state.turn + 1, answers: turned(state.answers), messages: [], typed: [] });
 
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
   changed: (state, { change, gesture }) => {
     const history = changed(state.history, after(state.history.present, change), gesture);
-    return ELSEWHERE.includes(change.type) ? elsewhere(state, history) : { ...state, history, typed: null };
+    if (ELSEWHERE.includes(change.type)) return elsewhere(state, history);
+    const waiting = state.typed.filter((each) => isWaiting(each) && targetOf(each.change) !== targetOf(change));
+    return { ...state, history, typed: waiting };
   },
   began: (state) => ({ ...state, history: beginning(state.history.present) }),
   rested: (state) => ({ ...state, history: rested(state.history) }),
-  undone: (state) => elsewhere(state, undone(state.history)),
+  undone: (state) => {
+    const last = state.typed.filter(isWaiting).at(-1);
+    return last ? { ...state, typed: state.typed.filter((each) => each !== last) }
+      : elsewhere(state, undone(state.history));
+  },
   redone: (state) => elsewhere(state, redone(state.history)),
   asked: (state, { panel, question }) => answers(state, panel, asked(state.answers[panel], question)),
   answered: (state, { panel, question, value }) =>
@@ -119,13 +125,20 @@ const STEPS = {
   said: (state, { text, about = text, offer }) =>
     ({ ...state, messages: [...others(state, about), { about, text, ...(offer ? { offer } : {}) }].slice(-MOST) }),
   closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
-  typed: (state, { typed }) => ({ ...state, typed, answers: without(state.answers, "typed") }),
+  typed: (state, { typed }) => ({ ...state, typed: [...state.typed.filter(({ id }) => id !== typed.id), typed],
+    answers: without(state.answers, panelOf(typed)) }),
   read: (state, { typed, sentence }) => {
-    if (state.typed !== typed) return state;
-    return sentence ? { ...state, typed: { ...typed, sentence } } : reduce(state, { type: "changed",
-      change: typed.change, gesture: null });
+    if (!state.typed.includes(typed)) return state;
+    return sentence ? { ...state, typed: state.typed.map((each) => (each === typed ? { ...typed, sentence } : each)) }
+      : reduce(state, { type: "changed", change: typed.change, gesture: null });
   },
 };
+
+/** Whether what was typed was not found wrong so far. @param {Typed} typed */
+const isWaiting = ({ sentence }) => sentence === undefined;
+
+/** What a change gives another value. @param {any} change */
+const targetOf = ({ type, place, layout, values }) => JSON.stringify([type, place, layout, Object.keys(values ?? {})]);
 
 /** The trees of networks, by their texts. @param {Parts} parts @returns {{[text: string]: Tree}} */
 const treesIn = ({ networks }) =>

@@ -23,8 +23,8 @@ def refuse_notes(notes: Sequence[str]) -> None:
     if notes:
         more = f" and {len(notes) - _SHOWN} more" if len(notes) > _SHOWN else ""
         raise ExportError(
-            f"A linear model has neither friction nor gaps: {', '.join(notes[:_SHOWN])}{more}. Leave them out on "
-            "purpose with linear=True, on the command line --linear."
+            f"A linear model has neither friction nor gaps ({', '.join(notes[:_SHOWN])}{more}). To export the design "
+            "without them: linear=True, on the command line --linear."
         )
 
 

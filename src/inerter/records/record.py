@@ -86,7 +86,8 @@ class Record:
                     f"shape {np.shape(values)}."
                 )
         if self.time.size < 4:
-            raise RecordError(f"A record must have at least 4 samples; {self.source!r} has {self.time.size}.")
+            cut = "" if self.time.size else " Is the file complete?"
+            raise RecordError(f"A record must have at least 4 samples; {self.source!r} has {self.time.size}.{cut}")
         if not np.all(np.diff(self.time) > 0.0):
             at = int(np.argmax(np.diff(self.time) <= 0.0)) + 1
             raise RecordError(

@@ -17,7 +17,7 @@ from scipy.interpolate import CubicSpline
 from scipy.signal import detrend, periodogram, welch
 
 from inerter.errors import RecordError
-from inerter.formatting import format_quantity
+from inerter.formatting import format_count, format_quantity
 from inerter.records.filtering import HIGHEST, gain, low_pass
 from inerter.records.gaps import LONGEST, missing_rows
 from inerter.records.record import Record
@@ -107,12 +107,12 @@ def _uneven(record: Record) -> RecordError:
             f"The samples of {record.source!r} are not evenly spaced, as a filter requires. Use ",
             *(Remedy(Action.RESAMPLE), " first."),
         )
-    places = "one place" if missing.after.size == 1 else f"{missing.after.size} places"
-    most = int(missing.counts.max())
+    places, most = missing.after.size, int(missing.counts.max())
+    first = f"after {format_quantity(record.time[missing.after[0]], 's', 6)}"
+    where = first if places == 1 else f"at {places} places, the first {first}, up to {most} in a row"
     remedy = Remedy(Action.FILL_GAPS) if most <= LONGEST else Remedy(Action.GAPS, "longest")
     return RecordError(
-        f"{record.source}: {missing.counts.sum()} rows are missing at {places}, the first after "
-        f"{format_quantity(record.time[missing.after[0]], 's', 6)}, up to {most} in a row. Use ",
+        f"{record.source}: {format_count(int(missing.counts.sum()), 'rows')} missing {where}. Use ",
         *(remedy, " first."),
     )
 

@@ -25,9 +25,7 @@ def test_friction_and_gaps_are_refused_unless_they_are_left_out(key: str) -> Non
     with pytest.raises(it.InerterError) as caught:
         it.export(REAL, key)
     sentence = str(caught.value)
-    assert sentence.startswith(
-        "A linear model has neither friction nor gaps (friction 'f' in 'strut' left out). To export"
-    )
+    assert sentence.startswith("A linear model has neither friction nor gaps (friction 'f' in 'strut' left out, gap ")
     assert sentence.endswith("). To export the design without them: linear=True, on the command line --linear.")
     assert it.export(REAL, key, linear=True) is not None
 

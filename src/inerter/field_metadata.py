@@ -149,31 +149,31 @@ def mount(sentence: str) -> Mapping[str, Any]:
 
 def fields_of(kind: type) -> tuple[Field, ...]:
     """Quantities of a dataclass, in the order of its fields."""
-    return _declared(kind, _QUANTITY)
+    return _declarations(kind, _QUANTITY)
 
 
 def choices_of(kind: type) -> tuple[TextChoice, ...]:
     """Choices of text of a dataclass, in the order of its fields."""
-    return _declared(kind, _CHOICE)
+    return _declarations(kind, _CHOICE)
 
 
 def typed_fields_of(kind: type) -> tuple[TypedField, ...]:
     """Typed settings of a dataclass, in the order of its fields."""
-    return _declared(kind, _FORMED)
+    return _declarations(kind, _FORMED)
 
 
 def mounts_of(kind: type) -> tuple[str, ...]:
     """Names of the mounted networks of a dataclass, in the order of its fields."""
-    return tuple(one.name for one in _declared(kind, _MOUNT))
+    return tuple(one.name for one in _declarations(kind, _MOUNT))
 
 
 def needed_mounts_of(kind: type) -> tuple[str, ...]:
     """Names of the required networks of a dataclass, in the order of its fields."""
-    return tuple(one.name for one in _declared(kind, _MOUNT) if one.needed)
+    return tuple(one.name for one in _declarations(kind, _MOUNT) if one.needed)
 
 
 @cache
-def _declared(kind: Any, what: str) -> tuple[Any, ...]:
+def _declarations(kind: Any, what: str) -> tuple[Any, ...]:
     fields = dataclasses.fields(kind)
     return tuple(_with_field(field, field.metadata[what]) for field in fields if what in field.metadata)
 

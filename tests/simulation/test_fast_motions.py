@@ -72,7 +72,7 @@ def test_a_trajectory_in_divided_steps_has_the_samples_of_one_in_whole_steps(giv
 def test_steps_that_resolve_a_motion_stay_as_they_are():
     system, table = member(SLOW, ROADS["sine"])
     assert event_driven.start_finely(system, table, np.zeros(system.order)).table is table
-    assert table.refined(1) is table
+    assert table.refine(1) is table
 
 
 def test_steps_are_not_divided_into_more_parts_than_memory_allows(monkeypatch):

@@ -59,7 +59,7 @@ def _card(name: str, study: Mapping[str, Any]) -> Card:
 
 
 def _question(study: Mapping[str, Any]) -> str:
-    """What a study asks beyond its designs, else what is asked of its vehicle; empty where neither is listed."""
+    """Question of a study beyond its designs, else of its vehicle; empty where neither is listed."""
     keys = {*study, *study.get("study", {})}
     asked = (question for key, question in _OF_SECTIONS.items() if key in keys)
     model = VEHICLES.get(study["vehicle"].get("model"))

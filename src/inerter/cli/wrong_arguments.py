@@ -13,7 +13,7 @@ from inerter.units import quote_value
 
 
 def argument_sentence(error: CycloptsError, command: str) -> str:
-    """What is wrong with the arguments of `command`, such as "inerter run", and a command to try in a second line."""
+    """Sentence on the wrong arguments of `command`, such as "inerter run", and in a second line a command to try."""
     remedy = f"{command} --help"
     match error:
         case UnusedCliTokensError(unused_tokens=[_, *_] as tokens):

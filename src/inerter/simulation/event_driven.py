@@ -293,7 +293,7 @@ def start_finely(
     """
     begun = start(system, table, state, outputs, **others)
     parts = 1 if begun.account.wanted else _parts_of_a_step(begun)
-    return begun if parts == 1 else start(system, table.refined(parts), state, outputs, **others)
+    return begun if parts == 1 else start(system, table.refine(parts), state, outputs, **others)
 
 
 def _parts_of_a_step(begun: Integration) -> int:

@@ -63,7 +63,7 @@ class InputTable:
             special = np.concatenate([[0], special])
         return replace(self, value_before=before, slope_before=slope, special=special)
 
-    def refined(self, parts: int) -> InputTable:
+    def refine(self, parts: int) -> InputTable:
         """The same motion with `parts` segments in place of each one, whose inputs go along the same cubics."""
         if parts == 1:
             return self
@@ -265,9 +265,9 @@ def tabulate(
     value_before, slope_before = value, slope
     for i, at, left, left_slope in before:
         kinks = np.abs(left_slope - slope[at, i]) > 1e-9 * float(np.abs(slope[:, i]).max())
-        slope_before = _replaced(slope_before, at[kinks], i, left_slope[kinks])
+        slope_before = _replace_column(slope_before, at[kinks], i, left_slope[kinks])
         leaps = np.abs(left - value[at, i]) > 1e-12 * max(float(np.abs(value[:, i]).max()), 1e-300)
-        value_before = _replaced(value_before, at[leaps], i, left[leaps])
+        value_before = _replace_column(value_before, at[leaps], i, left[leaps])
         jumped[at[leaps]] = True
     return InputTable(
         step=step,
@@ -284,7 +284,7 @@ def tabulate(
     )
 
 
-def _replaced(rows: Matrix, at: NDArray[np.intp], column: int, values: Matrix) -> Matrix:
+def _replace_column(rows: Matrix, at: NDArray[np.intp], column: int, values: Matrix) -> Matrix:
     """A copy of the rows with these values in one column; the rows themselves if there are none."""
     if at.size:
         rows = rows.copy()

@@ -242,7 +242,7 @@ class Trajectory:
             found.append((since, float(self.time[-1])))
         return found
 
-    def _chosen(self, names: Sequence[str] | None) -> list[str]:
+    def _names_or_all(self, names: Sequence[str] | None) -> list[str]:
         """The named outputs, or all."""
         return list(self.outputs) if names is None else [names] if isinstance(names, str) else list(names)
 
@@ -250,7 +250,7 @@ class Trajectory:
         """The named outputs, or all, as a dataset over `time` with units and long names."""
         import xarray  # noqa: PLC0415 - heavy
 
-        chosen = self._chosen(names)
+        chosen = self._names_or_all(names)
         data = {
             name: ("time", self[name], {"units": self.outputs[name].unit, "long_name": self.outputs[name].title})
             for name in chosen
@@ -263,7 +263,7 @@ class Trajectory:
 
         Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
-        chosen = self._chosen(names)
+        chosen = self._names_or_all(names)
         header = ["time [s]", *(f"{name} [{self.outputs[name].unit}]" for name in chosen)]
         rows = np.column_stack([self.time, *(self[name] for name in chosen)]).tolist()
         export_csv(path, SimulationError, header, rows, overwrite=overwrite)
@@ -282,7 +282,7 @@ class Trajectory:
 
         Raises `SimulationError` if the file cannot be written, or exists and `overwrite` does not say to replace it.
         """
-        chosen = self._chosen(names)
+        chosen = self._names_or_all(names)
         data: dict[str, Any] = {name[:31]: self[name] for name in chosen}
         data["time"] = self.time
         data["units"] = {name[:31]: self.outputs[name].unit for name in chosen}

@@ -120,7 +120,7 @@ def compare_results(first: Path, second: Path) -> ResultComparison:
 
 
 def _labels(results: xr.Dataset, name: str) -> list[str]:
-    """Labels of a dimension as text; an index has its unit, so that another one of that name is another index."""
+    """Labels of a dimension as text."""
     if name in swept_places(results):
         return [swept_text(results, name, value) for value in results[name].values.tolist()]
     found: list[str] = results[name].values.tolist()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from same_motions import assert_same_motion
 
 import inerter as it
 from inerter.simulation import event_driven
@@ -35,13 +36,7 @@ def test_a_motion_in_divided_steps_is_that_in_pieces_of_a_series(strut, road):
     assert 3 * table.time.size < divided.table.time.size < 16 * table.time.size
     assert whole.status.ok
     assert whole.events > 5
-    found, expected = (run.record.events[: run.events] for run in (divided, whole))
-    assert [found[of].tolist() for of in ("element", "before", "after")] == [
-        expected[of].tolist() for of in ("element", "before", "after")
-    ]
-    np.testing.assert_allclose(found["time"], expected["time"], rtol=0.0, atol=1e-10)
-    scale = np.abs(whole.record.states).max(axis=0)
-    np.testing.assert_allclose(divided.record.states / scale, whole.record.states / scale, rtol=0.0, atol=1e-9)
+    assert_same_motion(divided, whole, instants=1e-10, states=1e-9)
 
 
 @pytest.mark.parametrize("find", ["squares", "period"])

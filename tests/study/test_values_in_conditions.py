@@ -19,7 +19,8 @@ from study_text import HALF_CAR, assert_refused, load_text, study_text
 import inerter as it
 from inerter.files.study.cases import Outcome, cases, run_case
 from inerter.files.study.results import CONDITION, IN_CONDITIONS, dataset
-from inerter.files.study.running import StudyResult
+from inerter.files.study.running import StudyResult, run_study
+from inerter.files.study.searching import search_study
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.report.conditions import condition_tables
@@ -253,3 +254,53 @@ def test_a_name_that_is_the_number_of_another_condition_is_refused(tmp_path: Pat
     assert_refused(lambda: bus(tmp_path, loads=loads), "conditions[1].name", ["'2', the name of another condition"])
     study = bus(tmp_path, loads=loads.replace('"2"', '"1"'))
     assert replace(study).conditions[0].name == "1"
+
+
+def test_fronts_and_break_even_values_are_those_of_each_condition(tmp_path: Path) -> None:
+    """Of a car whose mass and speed a condition changes, as Python finds them for the car in that condition alone."""
+    loads = '[[conditions]]\nname = "empty"\n[[conditions]]\nvehicle.sprung_mass = "400 kg"\nroad.speed = "15 m/s"\n'
+    free = 'k = "40 kN/m"\nc = "1.2 kN s/m"\nc3 = { from = "1 kN s/m", to = "2 kN s/m" }\nb = "140 kg"'
+    settings = 'indices = ["J1"]\noptimise = "norm"\nbreak_even = ["b"]\ntrade_off = ["J1", "J3"]\npoints = 3'
+    text = study_text(settings, elements=free, layouts=STRUTS).replace("[study]", f"{loads}[study]")
+    study = load_text(tmp_path, text)
+    found = run_study(study, tmp_path / "out")
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "out" / "budgets.csv").read_text(encoding="utf-8"))))
+    assert [row["condition"] for row in rows] == ["", "empty", "2"]
+    points = list(csv.DictReader(io.StringIO((tmp_path / "out" / "fronts.csv").read_text(encoding="utf-8"))))
+    c3 = float(found.data["parameter_value"].sel(layout="S3", parameter="c3").item())
+    k = it.Spring(40e3)
+    for place, (mass, speed, row) in enumerate([(250.0, 25.0, rows[1]), (400.0, 15.0, rows[2])]):
+        road = it.Road(5e-7, speed)
+        best = it.QuarterCar(mass, 35.0, 150e3, k | it.Damper(c3) - it.Inerter(140.0, name="b"))
+        base = it.QuarterCar(mass, 35.0, 150e3, k | it.Damper(1.2e3))
+        expected = it.break_even(best, base, it.RideComfort(road), parameter="b", method=it.Norm(), bounds=(0.14, 14e3))
+        assert float(row["value"]) == pytest.approx(expected.value, rel=1e-8)
+        for point in points:
+            car = replace(best, strut=k | it.Damper(float(point["c3 [N s/m]"])) - it.Inerter(140.0))
+            for name, index in (("J1", it.RideComfort(road)), ("J3", it.TyreLoad(road))):
+                value = it.evaluate(car, index, it.Norm()).value
+                there = found.data["front_in_conditions"].sel(layout="S3", criterion=name)
+                assert float(there[int(point["point"]) - 1, place]) == pytest.approx(value, rel=1e-9)
+                assert float(point[f"{name} in {('empty', '2')[place]}"]) == pytest.approx(value, rel=1e-9)
+
+
+def test_networks_of_a_search_have_values_in_each_condition(tmp_path: Path) -> None:
+    loads = '[[conditions]]\nshare = 3\n[[conditions]]\nvehicle.sprung_mass = "400 kg"\nroad.speed = "15 m/s"\n'
+    parts = 'k = "40 kN/m"\nc = { network = 1, dampers = { from = "1 kN s/m", to = "2 kN s/m" } }'
+    settings = 'indices = ["J1"]\noptimise = "norm"\ntrade_off = ["J1", "J3"]\npoints = 3'
+    text = study_text(settings, elements=parts, layouts='S = "k | c"').replace("[study]", f"{loads}[study]")
+    search_study(load_text(tmp_path, text), tmp_path / "out")
+    tables = {
+        name: list(csv.DictReader(io.StringIO((tmp_path / "out" / name).read_text(encoding="utf-8"))))
+        for name in ("search.csv", "search_front.csv")
+    }
+    for number, (mass, speed) in enumerate([(250.0, 25.0), (400.0, 15.0)], 1):
+        for row, index, key in [
+            *((row, row["index"], f"value in {number}") for row in tables["search.csv"]),
+            *((row, index, f"{index} in {number}") for row in tables["search_front.csv"] for index in ("J1", "J3")),
+        ]:
+            car = it.QuarterCar(mass, 35.0, 150e3, it.Spring(40e3) | it.Damper(float(row["c1 [N s/m]"])))
+            road = it.Road(5e-7, speed)
+            wanted = it.RideComfort(road) if index == "J1" else it.TyreLoad(road)
+            assert float(row[key]) == pytest.approx(it.evaluate(car, wanted, it.Norm()).value, rel=1e-9)
+    assert len(tables["search_front.csv"]) >= 2

@@ -222,7 +222,9 @@ def break_even(study: Study, body: Body) -> Answer:
         raise DesignError("A break-even value needs a baseline: a second layout, or `baseline` in the request.")
     method = body.get("method") or decisive_method(study.evaluate)
     index, element = required_value(body, "index"), required_value(body, "parameter")
-    found = element_break_even(study, design.vehicle, baseline.vehicle, index, element, study.method(method))
+    found = element_break_even(
+        design.vehicle, baseline.vehicle, study.over_conditions(index), element, study.method(method)
+    )
     return {
         "parameter": found.parameter,
         "method": method,

@@ -21,6 +21,7 @@ from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
+from inerter.formatting import format_list
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.conclusions import conclusion_sentences
@@ -38,7 +39,7 @@ def run(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     """Run a study file into a folder; returns its status."""
     loaded = load_study(study)
     folder = options.output or Path(f"{study.stem}-results")
-    items = " and ".join(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
+    items = format_list(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
     with study_work(("run", str(study)), folder, options, items, _pace(loaded)) as settings:
         result = run_study(loaded, folder, finish=write_figures_and_report, **settings)
     say(f"report: {folder / REPORT}")

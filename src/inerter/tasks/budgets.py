@@ -14,10 +14,12 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
+from inerter.files.study.conditions import condition_labels
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
 from inerter.formatting import capital, format_list, format_quantity
+from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.networks.elements import Tied
@@ -34,32 +36,51 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _KEYS = (
-    *("index", "layout", "method", "better", "value", "unit", "standard_error", "low", "high", "error_bound"),
+    *(
+        "index",
+        "layout",
+        "condition",
+        "method",
+        "better",
+        "value",
+        "unit",
+        "standard_error",
+        "low",
+        "high",
+        "error_bound",
+    ),
     *("crossings", "status"),
 )
+_MOST_SHOWN = 6  # conditions, one by one
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
 @dataclass(frozen=True)
 class BudgetPart(TaskPart["BudgetAnswer"]):
-    """Task part: break-even value of one element for the best design of a layout and index, against the baseline."""
+    """Task part: break-even value of one element for the best design of a layout and index, against the baseline.
+
+    Over all conditions, or in that of the label `condition` alone.
+    """
 
     layout: str
     index: str
     parameter: str
+    condition: str = ""
 
     @property
     def name(self) -> str:
         """Name of the task part in messages."""
-        return f"break-even value of {self.parameter}, {self.layout} {self.index}"
+        return f"break-even value of {self.parameter}, {self.layout} {self.index}{_in_condition(self.condition)}"
 
     def compute(self, study: Study, designs: Designs, threads: int) -> BudgetAnswer:
         """Break-even value of the element in the best design found."""
         design, baseline = (
             best_design(study, designs, layout, self.index) for layout in (self.layout, str(study.baseline))
         )
-        method = decisive_method(study.evaluate)
-        found = element_break_even(study, design, baseline, self.index, self.parameter, study.method(method, threads))
+        method, index = decisive_method(study.evaluate), study.over_conditions(self.index)
+        if self.condition:
+            index = study.in_each(study.index(self.index))[condition_labels(study.conditions).index(self.condition)]
+        found = element_break_even(design, baseline, index, self.parameter, study.method(method, threads))
         status = with_decisive_method(found.status, method)
         return self._answer(study, found, status.kind.value, status.message)
 
@@ -73,6 +94,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             layout=self.layout,
             index=self.index,
             parameter=self.parameter,
+            condition=self.condition,
             unit=element.unit,
             method=decisive_method(study.evaluate),
             at_most=element.may_vanish,
@@ -94,6 +116,7 @@ class BudgetAnswer(Answer):
     sure = tuple(kind.value for kind in StatusKind if kind.severity is Severity.INFO)
     index: str
     parameter: str
+    condition: str = ""  # label of the one condition of the index; empty for all of them
     unit: str
     method: str
     at_most: bool  # whether the layout is better below the value; above it otherwise
@@ -113,14 +136,16 @@ class Budgets(Task[BudgetAnswer]):
     answer = BudgetAnswer
 
     def parts(self, study: Study) -> list[BudgetPart]:
-        """Task parts in the order of elements, indices, layouts; the baseline is left out."""
+        """Task parts in the order of elements, indices, layouts, all conditions and each; the baseline is left out."""
         used = elements_used(study)
+        each = condition_labels(study.conditions) if len(study.conditions) > 1 else []
         return [
-            BudgetPart(layout, index, name)
+            BudgetPart(layout, index, name, condition)
             for name in study.budgets
             for index in study.indices
             for layout in study.layouts
             if layout != study.baseline and layout in used.get(name, ())
+            for condition in ("", *each)
         ]
 
     def problems(self, study: Study, given: Collection[str]) -> Iterator[Problem]:
@@ -163,11 +188,13 @@ class Budgets(Task[BudgetAnswer]):
             low, high = one.interval or (None, None)
             better = "" if one.value is None else "below" if one.at_most else "above"
             contents = [
-                *(f"{one.layout}, {one.index}", one.parameter, _verdict(one), one.index, one.layout),
-                *(one.method, better, one.value, one.unit, one.standard_error, low, high, one.error_bound),
+                *(f"{one.layout}, {one.index}{_in_condition(one.condition)}", one.parameter, _verdict(one)),
+                *(one.index, one.layout, one.condition, one.method, better),
+                *(one.value, one.unit, one.standard_error, low, high, one.error_bound),
                 *(";".join(map(repr, one.crossings)), one.status_text),
             ]
-            rows.append(Row(cells(*contents), status=one.doubt, remark=_remark(one)))
+            is_shown = not one.condition or len(results.study.conditions) <= _MOST_SHOWN
+            rows.append(Row(cells(*contents), status=one.doubt, remark=_remark(one), shown=is_shown))
         by = brief_words_of(results.answers[0].method)
         return Table(
             f"Break-even values: where each layout is better than {results.study.baseline}, by {by}", heads, rows
@@ -175,7 +202,8 @@ class Budgets(Task[BudgetAnswer]):
 
     def sentences(self, results: TaskResults[BudgetAnswer]) -> Iterator[str]:
         """Ranges of each element in which the best layouts outperform the baseline, as sentences."""
-        study, data, budgets = results.study, results.data, results.answers
+        study, data = results.study, results.data
+        budgets = [found for found in results.answers if not found.condition]
         best = {name for index in study.indices for name in best_layouts(data, index)} if budgets else set()
         for element, layout in dict.fromkeys((found.parameter, found.layout) for found in budgets):
             own = [found for found in budgets if (found.parameter, found.layout) == (element, layout)]
@@ -192,10 +220,8 @@ class Budgets(Task[BudgetAnswer]):
                 yield " ".join(told)
 
 
-def element_break_even(
-    study: Study, design: Vehicle, baseline: Vehicle, index: str, element: str, method: Method
-) -> BreakEven:
-    """Break-even value of an element of `study` in a design with numbers only, for an index over its conditions.
+def element_break_even(design: Vehicle, baseline: Vehicle, index: IndexLike, element: str, method: Method) -> BreakEven:
+    """Break-even value of an element in a design with numbers only.
 
     Raises what `break_even` raises.
     """
@@ -203,7 +229,11 @@ def element_break_even(
     for present in elements_by_label(design, element):  # else it is none of the design, which `break_even` tells
         if not present.may_vanish and isinstance(present.value, float):
             bounds = present.value / _DOWN, present.value * _UP
-    return break_even(design, baseline, study.over_conditions(index), parameter=element, method=method, bounds=bounds)
+    return break_even(design, baseline, index, parameter=element, method=method, bounds=bounds)
+
+
+def _in_condition(label: str) -> str:
+    return f" in condition {label}" if label else ""
 
 
 def _verdict(found: BudgetAnswer) -> str:

@@ -8,11 +8,14 @@ from math import isfinite, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from inerter.errors import StatusKind
 from inerter.files.common.problem import Problem, at
+from inerter.files.study.conditions import condition_labels
 from inerter.files.study.limits import all_limits
 from inerter.files.study.method_labels import method_labels
+from inerter.files.study.results import CONDITION
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.formatting import format_count, format_list, format_quantity, label_with_unit
@@ -67,6 +70,7 @@ class FrontAnswer(Answer):
     knee: int | None
     standard_errors: list[list[float | None]] = field(default_factory=list)  # of the values; none of an exact method
     error_bounds: list[list[float | None]] = field(default_factory=list)  # of the values, relative, sampling apart
+    in_conditions: list[list[list[float]]] = field(default_factory=list)  # the values in each operating condition
 
     def quantities(self, study: Study, point: int) -> list[Quantity]:
         """The indices at a point with their units and errors."""
@@ -76,6 +80,11 @@ class FrontAnswer(Answer):
             Quantity(value, study.unit(name), nan if error is None else error, nan if bound is None else bound)
             for name, value, error, bound in zip(study.trade_off, self.values[point], errors, bounds, strict=True)
         ]
+
+    def values_in_conditions(self, study: Study, point: int) -> NDArray[np.float64]:
+        """The indices at a point in each condition (criteria, conditions), nan where they are not known."""
+        known = self.in_conditions[point] if self.in_conditions else None
+        return np.array(known or np.full((len(study.trade_off), len(study.conditions)), nan))
 
 
 class Fronts(Task[FrontAnswer]):
@@ -121,6 +130,7 @@ class Fronts(Task[FrontAnswer]):
         layouts, parameters = data["layout"].values.tolist(), data["parameter"].values.tolist()
         values, errors, bounds = np.full((3, len(layouts), points, len(study.trade_off)), np.nan)
         designs = np.full((len(layouts), points, len(parameters)), np.nan)
+        each = np.full((*values.shape, len(study.conditions)), np.nan)
         knees, leaps = np.full((len(layouts), points), False), np.full((len(layouts), points), False)
         status = np.full(len(layouts), "missing", dtype=object)
         for front in answers:
@@ -131,6 +141,7 @@ class Fronts(Task[FrontAnswer]):
                 values[row, i] = [number.value for number in numbers]
                 errors[row, i] = [number.error for number in numbers]
                 bounds[row, i] = [number.bound for number in numbers]
+                each[row, i] = front.values_in_conditions(study, i)
                 designs[row, i] = [design.get(name, np.nan) for name in parameters]
             knees[row, [] if front.knee is None else [front.knee]] = True
             leaps[row, front.jumps] = True
@@ -141,6 +152,9 @@ class Fronts(Task[FrontAnswer]):
         )
         of_points = ("layout", "front_point", "criterion")
         attributes = {"long_name": "index at a point of the front", "method_words": _method_words(study)}
+        there = {"long_name": "that index in each condition"}
+        if study.conditions:
+            labelled = labelled.assign(front_in_conditions=((*of_points, CONDITION), each, there))
         return labelled.assign(
             front_value=(of_points, values, attributes),
             front_standard_error=(of_points, errors, {"long_name": "standard error of that index"}),
@@ -163,6 +177,11 @@ class Fronts(Task[FrontAnswer]):
             *(Column(name, label_with_unit(name, free[name]), listed="Parameters") for name in names),
             *(Column(key=f"{name}_{which}") for name in study.trade_off for which in ("standard_error", "error_bound")),
             *(Column(key=key) for key in ("knee", "jump_after", "status")),
+            *(
+                Column(key=f"{name} in {label}")
+                for name in study.trade_off
+                for label in condition_labels(study.conditions)
+            ),
         ]
         rows = [row for one in results.answers for row in _rows(study, one, names)]
         return Table(f"{_title(study)}: the designs at the ends and the knee", heads, rows)
@@ -204,6 +223,7 @@ def _answer(layout: str, found: ParetoFront, method: str) -> FrontAnswer:
         knee=found.knee,
         standard_errors=[[number_or_none(one.standard_error) for one in row] for row in found.estimates],
         error_bounds=[[number_or_none(one.error_bound) for one in row] for row in found.estimates],
+        in_conditions=[[[there.value for there in one.in_conditions] for one in row] for row in found.estimates],
         **with_decisive_method(found.status, method).to_json(),
     )
 
@@ -236,12 +256,14 @@ def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterat
             *(Quantity(design[name], study.free_units[name]) if name in design else None for name in parameters),
             *(number_or_none(error) for value in values for error in (value.error, value.bound)),
             *("yes" if i == front.knee else "", "yes" if i in front.jumps else "", front.statuses[i]),
+            *front.values_in_conditions(study, i).ravel().tolist(),
         ]
         doubt = front.doubt if i == max(shown, default=0) else ""
         yield Row(cells(*contents), status=doubt, shown=i in shown)
     if not front.values:
         unknown = [None] * (3 * len(study.trade_off) + len(parameters) + 2)
-        yield Row(cells(front.layout, "", "", *unknown, front.status_text), status=front.doubt)
+        there = [None] * (len(study.trade_off) * len(study.conditions))
+        yield Row(cells(front.layout, "", "", *unknown, front.status_text, *there), status=front.doubt)
 
 
 def _labelled_points(study: Study, front: FrontAnswer) -> dict[int, str]:

@@ -243,7 +243,9 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     study, element = asked.study, trial.element
     try:
         by = study.method(method, asked.threads)
-        found = element_break_even(study, trial.design, asked.baseline, asked.index, trial.parameter, by)
+        found = element_break_even(
+            trial.design, asked.baseline, study.over_conditions(asked.index), trial.parameter, by
+        )
     except FAILURES as error:
         message = str(error).rstrip(".")
         sentence = f"{capital(trial.words)}: break-even value not computed ({message})."

@@ -7,6 +7,7 @@ from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 from inerter.errors import StatusKind
+from inerter.files.study.conditions import condition_labels
 from inerter.files.study.summary import bounds_text
 from inerter.formatting import capital, format_percent, format_quantity, label_with_unit
 from inerter.networks.elements import ELEMENT_TYPES, Inerter
@@ -113,13 +114,14 @@ def networks_table(found: StudySearch) -> Table:
     names = _parameters([network for one in searches for network in one.result.ranking])
     units = {name: label_with_unit(name, parameter_unit(found.study, name)) for name in names}
     keys = ("layout", "index", "rank", "network", "elements", "value", "unit", "improvement_percent", "status")
-    every = [*keys, *units.values(), "at_bound", "starts", "agreed", "as_good", "equal_networks"]
-    rows = [row for one in searches for row in _network_rows(one, units)]
+    there = [f"value in {label}" for label in condition_labels(found.study.conditions)]
+    every = [*keys, *units.values(), "at_bound", "starts", "agreed", "as_good", "equal_networks", *there]
+    rows = [row for one in searches for row in _network_rows(one, units, there)]
     return Table("Networks", [Column(key=key) for key in every], [Row(cells(*map(row.get, every))) for row in rows])
 
 
-def _network_rows(one: LayoutSearch, units: Mapping[str, str]) -> Iterator[dict[str, Content]]:
-    """Contents of `networks_table` by key; `units` are the keys of the parameters."""
+def _network_rows(one: LayoutSearch, units: Mapping[str, str], there: Sequence[str]) -> Iterator[dict[str, Content]]:
+    """Contents of `networks_table` by key; `units` are the keys of the parameters, `there` of the conditions."""
     of_search: dict[str, Content] = {"layout": one.layout, "index": one.index, "unit": one.result.unit}
     for rank, found in enumerate(one.result.ranking, 1):
         yield of_search | {
@@ -135,6 +137,7 @@ def _network_rows(one: LayoutSearch, units: Mapping[str, str]) -> Iterator[dict[
             "agreed": found.n_converged,
             "as_good": found.simpler,
             "equal_networks": "; ".join(found.like),
+            **{key: own.value for key, own in zip(there, found.estimate.in_conditions if there else (), strict=True)},
         }
     for layout, reason in one.result.failed:
         status = f"{StatusKind.FAILED.value}: {reason}"
@@ -188,14 +191,16 @@ def front_table(found: StudySearch) -> Table:
     names = _parameters(points)
     values = [label_with_unit(index, study.unit(index)) for index in study.trade_off]
     units = [label_with_unit(name, parameter_unit(study, name)) for name in names]
-    keys = ("layout", "up_to_elements", "point", "network", "elements", *values, *units, "at_bound", "status")
+    there = [f"{index} in {label}" for index in study.trade_off for label in condition_labels(study.conditions)]
+    keys = ("layout", "up_to_elements", "point", "network", "elements", *values, *units, "at_bound", "status", *there)
     rows = []
     for one in found.fronts:
         for count, front in one.result.by_elements.items():
             for number, point in enumerate(front, 1):
                 at_bound = bounds_text(point.active_bounds)
                 own = [*point.values, *(point.parameters.get(name) for name in names), at_bound, str(point.status)]
-                rows.append(Row(cells(one.layout, count, number, point.layout, point.n_elements, *own)))
+                each = [own.value for estimate in point.estimates for own in estimate.in_conditions] if there else []
+                rows.append(Row(cells(one.layout, count, number, point.layout, point.n_elements, *own, *each)))
     return Table("Pareto fronts over networks", [Column(key=key) for key in keys], rows)
 
 

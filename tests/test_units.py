@@ -335,3 +335,11 @@ def test_a_library_that_is_half_imported_by_another_thread_makes_no_unit_unknown
         units.is_unit("(m/s^2)^2/h")
     faults.clear()
     units._registry.cache_clear()
+
+
+@pytest.mark.parametrize(("given", "meant"), [("g", "gravity"), ("gal", "Gal"), ("g_n", "gravity"), ("N", "m/s^2")])
+def test_an_acceleration_in_grams_or_gallons_is_told_what_is_meant(given, meant):
+    with pytest.raises(UnitError, match=f'such as "0.3 {re.escape(meant)}"'):
+        parse_quantity(f"0.3 {given}", "m/s^2")
+    assert parse_quantity("2 gravity", "m/s^2") == 2.0 * 9.80665
+    assert parse_quantity("2 Gal", "m/s^2") == 0.02

@@ -26,6 +26,12 @@ _NAME = rf"[^\W\d_]++{_POWER}?+"
 _UNIT = re.compile(rf"(?:{_NAME}|\((?:{_NAME}|[\s*/·.])++\){_POWER}|[()\s*/·.])+")  # a bracket with a power holds none
 _DENSITY = "/Hz"  # suffix of a spectral density, which may be given per rad/s too
 _PER_FREQUENCY = re.compile(r"\b[kM]?(?:Hz|hertz)\b|\brad(?:ian)?s?\b")
+_ACCELERATIONS = {
+    "g": "gravity",
+    "G": "gravity",
+    "gal": "Gal",
+    **dict.fromkeys(("gn", "g_n", "g0", "g_0"), "gravity"),
+}  # as meant in an acceleration, not grams and gallons
 _FORCES = {"lb": "lbf", "lbs": "lbf", "lbm": "lbf", "kg": "kgf"}  # weight of a mass, as meant in a force
 _MASS = re.compile(rf"\b({'|'.join(_FORCES)})\b")
 _SPELLINGS = (  # that are often seen, and their replacements
@@ -64,7 +70,8 @@ def parse_quantity(text: str, unit: str) -> float:
         return _convert(text, number, given, "m^3") * _KAPPA_OVER[form]
     if not _have_same_dimension(given, unit):
         problem = f"incompatible unit {_describe_unit(given)}"
-        like = f"{_number_of(text)} {_as_force(given, (unit,)) or _with_prefix(given, unit)}"
+        meant = _as_force(given, (unit,)) or _as_acceleration(given, unit)
+        like = f"{_number_of(text)} {meant or _with_prefix(given, unit)}"
         _fail(text, problem, expected, example or like)
     _check_density(text, given, unit)
     return _convert(text, number, given, unit)
@@ -193,7 +200,7 @@ def _split(text: object, expected: str, units: Sequence[str] = (), example: str 
         _fail(text, "unit missing", expected, example)
     if not is_unit(given):
         why = "(units are case-sensitive; write a product with a space or *)"
-        meant = _respell(given)
+        meant = _respell(given) or _ACCELERATIONS.get(given, "")
         if any(meant and _have_same_dimension(meant, unit) for unit in units):
             example = f"{number.group(1)} {meant}"
         _fail(text, f"unknown unit {quote_value(given)} {why}", expected, example)
@@ -219,6 +226,12 @@ def _as_force(given: str, units: Iterable[str]) -> str:
     """`given` with forces for its masses ("lbf/in" for "lb/in"), if compatible with one of `units`; else empty."""
     force = _MASS.sub(lambda mass: _FORCES[mass[0]], given)
     return force if force != given and any(_have_same_dimension(force, unit) for unit in units) else ""
+
+
+def _as_acceleration(given: str, unit: str) -> str:
+    """What `given` means as an acceleration ("gravity" for "g"), if `unit` is of one; else empty."""
+    meant = _ACCELERATIONS.get(given, "")
+    return meant if meant and _have_same_dimension(meant, unit) else ""
 
 
 def _respell(given: str) -> str:

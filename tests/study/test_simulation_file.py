@@ -19,6 +19,8 @@ from inerter.files.simulation.request import SimulationRequest, write_simulation
 from inerter.files.simulation.sections import INITIAL, SimulationSettings
 from inerter.networks.elements import Damper, Friction, Gap, Inerter, Spring
 from inerter.signals.harmonics import multisine
+from inerter.signals.records import read_signal
+from inerter.simulation.simulate import simulate
 from inerter.vehicle.registry import VEHICLES
 from inerter.vehicle.rig import Rig
 
@@ -179,7 +181,7 @@ def test_every_kind_of_signal_is_made_of_its_own_examples(load, tmp_path, kind, 
     (tmp_path / "road.csv").write_text("distance [m],height [mm]\n0,0\n10,5\n100,0\n")
     keys = {name: key.of(unit) for name, key in SIGNALS[kind].keys.items()}
     lines = KIND_KEYS.get(kind) or "\n".join(key.example for key in keys.values() if key.default is REQUIRED)
-    moved = {"m": "road", "N": "sprung_force", "N m": "pitch_moment"}[unit]
+    moved = {"m": "road", "N": "sprung_force", "N m": "pitch_moment", "m/s^2": "ground_acceleration"}[unit]
     old = 'kind = "multisine"\nseed = 3'
     request = load(HALF, (old, f'kind = "{kind}"\ninput = "{moved}"\n{lines}'), ('"0.5 s"', '"2 ms"'))
     assert request.signal.unit == unit
@@ -239,7 +241,7 @@ floor_2 = "30 t"
 storey_1 = { upper = { floor_1 = 1 } }
 storey_2 = { upper = { floor_2 = 1 }, lower = { floor_1 = 1 }, network = "k | c" }
 [vehicle.forces]
-quake = { floor_1 = 40000, floor_2 = 30000 }
+push = { floor_1 = 1 }
 [elements]
 k = "30 MN/m"
 c = "300 kN s/m"
@@ -248,7 +250,7 @@ plain = "k | c"
 [signal]
 kind = "sampled"
 file = "quake.csv"
-input = "quake"
+input = "ground_acceleration"
 hold = "linear"
 [simulation]
 duration = "4 s"
@@ -256,18 +258,44 @@ step = "20 ms"
 """
 
 
-def test_an_earthquake_record_is_a_force_on_all_masses(load, tmp_path):
+def test_an_earthquake_record_shakes_the_ground(load, tmp_path):
     time = np.arange(201) * 0.02
     ground = np.random.default_rng(0).normal(size=time.size)  # m/s^2
-    table = "\n".join(f"{t:.2f}, {-a!r}" for t, a in zip(time.tolist(), ground.tolist(), strict=True))
-    (tmp_path / "quake.csv").write_text(f"time [s], value [N]\n{table}\n", encoding="utf-8")
-    run = load(BUILDING).run()
+    table = "\n".join(f"{t:.2f}, {100.0 * a!r}" for t, a in zip(time.tolist(), ground.tolist(), strict=True))
+    (tmp_path / "quake.csv").write_text(f"time [s], value [cm/s^2]\n{table}\n", encoding="utf-8")
+    request = load(BUILDING)
+    run = request.run()
     coupling = np.array([[2.0, -1.0], [-1.0, 1.0]]) / np.array([[40e3], [30e3]])
     a = np.block([[np.zeros((2, 2)), np.eye(2)], [-30e6 * coupling, -300e3 * coupling]])
     b, above_ground = np.array([[0.0], [0.0], [-1.0], [-1.0]]), np.eye(2, 4)
-    _, expected, _ = lsim((a, b, above_ground, np.zeros((2, 1))), ground, time)
-    found = np.stack([run["floor_1_displacement"], run["floor_2_displacement"]], axis=1)
-    np.testing.assert_allclose(found, expected, atol=1e-10 * np.abs(expected).max())
+    outputs = np.vstack(
+        [above_ground, a[2:]]
+    )  # over the ground, and accelerations, which are those over it and its own
+    _, expected, _ = lsim((a, b, outputs, np.zeros((4, 1))), ground, time)
+    names = [f"floor_{floor}_{what}" for what in ("relative_displacement", "acceleration") for floor in (1, 2)]
+    for name, values in zip(names, expected.T, strict=True):
+        np.testing.assert_allclose(run[name], values, atol=1e-10 * np.abs(values).max())
+    assert_survives(request, tmp_path / "elsewhere")
+    record = read_signal(tmp_path / "quake.csv", "m/s^2", "linear")
+    plain = load(
+        BUILDING,
+        (
+            'kind = "sampled"\nfile = "quake.csv"\ninput = "ground_acceleration"\nhold = "linear"',
+            'kind = "step"\nheight = "1 N"',
+        ),
+    ).design()
+    again = simulate(plain, forces={"ground_acceleration": record}, duration=4.0, step=0.02)
+    np.testing.assert_array_equal(again["floor_2_acceleration"], run["floor_2_acceleration"])
+
+
+def test_a_car_on_shaken_ground_has_its_road_on_it(load, tmp_path):
+    """Over ground with a constant acceleration a car sinks as under so much more weight."""
+    moved = 'kind = "step"\ninput = "ground_acceleration"\nheight = "2 m/s^2"'
+    run = load(CAR, (SEED, moved), ('layout = "S2"', 'layout = "S1"'), ('"0.5 s"', '"20 s"\nstep = "1 ms"')).run()
+    tyre = 2.0 * (181.75 + 25.0) / 120e3
+    assert run["unsprung_relative_displacement"][-1] == pytest.approx(-tyre, rel=1e-6)
+    assert run["sprung_relative_displacement"][-1] == pytest.approx(-tyre - 2.0 * 181.75 / 60e3, rel=1e-6)
+    assert run["sprung_acceleration"][-1] == pytest.approx(2.0, rel=1e-6)
 
 
 def test_the_steady_state_is_one_period(load):
@@ -322,6 +350,23 @@ BAD = {
     "band": (CAR, [("seed = 3", 'lowest = "3 kHz"')], "signal", ["must not exceed", "3000 Hz and 1000 Hz"]),
     "road as force": (CAR, [("seed = 3", 'input = "sprung_force"')], "signal.kind", ["shape of a road"]),
     "input": (CAR, [("seed = 3", 'input = "rod"')], "signal.input", ['"rod"', 'Did you mean "road"?']),
+    "shaken rig": (
+        RIG,
+        [
+            (
+                'kind = "cosine"\namplitude = "1 mm"',
+                'kind = "cosine"\ninput = "ground_acceleration"\namplitude = "1 m/s^2"',
+            )
+        ],
+        "signal.input",
+        ["displacement"],
+    ),
+    "shaken in mm": (
+        CAR,
+        [(SEED, 'kind = "sine"\ninput = "ground_acceleration"\namplitude = "1 mm"\nfrequency = "1 Hz"')],
+        "signal.amplitude",
+        ["incompatible unit", '"1 m/s^2"'],
+    ),
     "rig's input": (RIG, [('"3 Hz"', '"3 Hz"\ninput = "road"')], "signal.input", ["displacement"]),
     "no file": (CAR, [(SEED, 'kind = "profile"\nfile = "none.csv"')], "signal", ["file not found", "none.csv"]),
     "no roughness": (CAR, [('roughness = "5e-7 m^3/cycle"\n', "")], "road.roughness", ["multisine", "m^3/cycle"]),

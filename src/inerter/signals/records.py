@@ -57,7 +57,7 @@ def read_signal(
     """Signal of a table of samples over time in a file, as by `Signal.sampled`.
 
     `path` is a CSV file with a column of times and one of values, with their units in the header, such as
-    `time [s], value [mm]`; `unit` is that of the signal, m or N.
+    `time [s], value [mm]`; `unit` is that of the signal, m, N or m/s^2.
 
     Raises `SignalError`, which names the line, for a file that cannot be read in this way, and as `Signal.sampled`
     does.

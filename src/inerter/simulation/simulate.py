@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, Unpack
 
@@ -30,6 +30,7 @@ from inerter.simulation.periodic_steady_state import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
 from inerter.validation import is_number
+from inerter.vehicle.mechanism import GROUND_ACCELERATION
 from inerter.vehicle.vehicle import Vehicle
 
 _REPORTS = 100  # of progress
@@ -85,7 +86,8 @@ def simulate(
     The keywords of `RunInputs` are the excitation and the initial state. `road` moves all roads, each after its delay
     at `speed` [m/s] (by default the signal's own); given by name, each road has its own signal and no further delay.
     `displacement` moves a rig; `forces` are external forces by name. Roads may all stay at rest while forces act, and
-    forces that get no signal are zero.
+    forces that get no signal are zero. The force "ground_acceleration" [m/s^2, up positive] shakes the ground of any
+    vehicle with masses: displacements and velocities are then relative to it.
 
     The event-driven integrator is exact between events for inputs that are cubics over a step (Hermite data, lines,
     holds), and finds events to near machine precision. `"time-stepping"` is independent of it, of first order in
@@ -147,7 +149,7 @@ def check_simulation(vehicle: Vehicle, driven: RunInputs, settings: RunSettings)
 def _plan(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> _Plan:
     initial = initial_of(driven)
     moved: dict[str, Any] = {name: given for name, given in driven.items() if name != "initial"}
-    system = piecewise(vehicle)
+    system = piecewise(_on_its_ground(vehicle, driven.get("forces")))
     signals, delays = assign(system.mechanism, **moved)
     plan = _Plan(system, tuple(signals), tuple(delays), initial)
     known = common_period(signals) if plan.is_periodic or settings.duration is None else None
@@ -160,6 +162,16 @@ def _plan(vehicle: Vehicle, driven: RunInputs, settings: RunSettings) -> _Plan:
     if settings.integrator == "time-stepping" and (plan.is_periodic or settings.energy):
         raise SimulationError("A periodic steady state and the energy account need the event-driven integrator.")
     return plan
+
+
+def _on_its_ground(vehicle: Vehicle, forces: object) -> Vehicle:
+    """The vehicle on moving ground if the acceleration of the ground is among the forces that excite it."""
+    if not isinstance(forces, Mapping) or GROUND_ACCELERATION not in forces:
+        return vehicle
+    mechanism = vehicle.mechanism()
+    is_own = GROUND_ACCELERATION in [force.name for force in mechanism.forces]
+    has_mass = any(not coordinate.angle for coordinate in mechanism.coordinates)
+    return mechanism.on_moving_ground() if has_mass and not is_own else vehicle
 
 
 def _length(duration: float | None, period: float | None, periodic: bool) -> float:

@@ -17,13 +17,13 @@ from inerter.signals.records import held_noise, read_signal
 from inerter.signals.signal import Signal
 from inerter.signals.tables import HOLDS
 from inerter.signals.transients import bump, chirp, step
-from inerter.vehicle.mechanism import TRACKS
+from inerter.vehicle.mechanism import GROUND_ACCELERATION, TRACKS
 from inerter.vehicle.registry import VEHICLES
 
 BOTH = "both"  # tracks of a profile, each under its own wheels
-UNITS = ("m", "N", "N m")  # of what a signal can be
-_SQUARES = {"m": "m^2", "N": "N^2", "N m": "N^2 m^2"}
-_SIZES = {"m": "1 mm", "N": "100 N", "N m": "100 N m"}
+UNITS = ("m", "N", "N m", "m/s^2")  # of what a signal can be
+_SQUARES = {"m": "m^2", "N": "N^2", "N m": "N^2 m^2", "m/s^2": "(m/s^2)^2"}
+_SIZES = {"m": "1 mm", "N": "100 N", "N m": "100 N m", "m/s^2": "1 m/s^2"}
 
 
 class SignalKey(NamedTuple):
@@ -205,7 +205,7 @@ def unit_of(name: object) -> str:
 @cache_until_registration
 def _force_units() -> dict[str, str]:
     """Raises `RegistryError` if a force has two units, or one that no signal has."""
-    found: dict[str, str] = {}
+    found = {GROUND_ACCELERATION: "m/s^2"}
     for kind in VEHICLES.values():
         for force, unit in kind.forces.items():
             if unit not in UNITS:

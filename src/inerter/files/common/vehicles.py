@@ -19,6 +19,7 @@ from inerter.formatting import format_number, format_quantity, format_range, in_
 from inerter.networks.elements import Damper, Free, Network, Spring
 from inerter.units import quote_value
 from inerter.vehicle.mechanism import (
+    GROUND_ACCELERATION,
     Coordinate,
     Force,
     Mechanism,
@@ -30,11 +31,13 @@ from inerter.vehicle.mechanism import (
     Tyre,
 )
 from inerter.vehicle.registry import VEHICLES
+from inerter.vehicle.rig import Rig
 from inerter.vehicle.seat import Seat
 from inerter.vehicle.vehicle import Vehicle
 
 VehicleTable = Mapping[str, Any]
 Networks = Mapping[str, Network]
+_GROUND = {GROUND_ACCELERATION: "m/s^2"}
 _ANY: Network = Spring(1.0) | Damper(1.0)  # where it does not matter what is mounted
 
 
@@ -118,9 +121,10 @@ def vehicle_problems(table: VehicleTable) -> Iterator[Problem]:
 def inputs(table: VehicleTable) -> dict[str, str]:
     """Inputs that a signal may excite, with the unit of each; the default input first."""
     if table["model"] == MECHANISM:
-        return {**({"road": "m"} if table["roads"] else {}), **forces_of(table)}
+        ground = {} if all(map(is_angle, table["coordinates"].values())) else _GROUND
+        return {**({"road": "m"} if table["roads"] else {}), **forces_of(table), **ground, **forces_of(table)}
     kind = VEHICLES[table["model"]]
-    return {kind.moved: "m", **kind.forces}
+    return {kind.moved: "m", **kind.forces, **({} if kind is Rig else _GROUND)}
 
 
 def tracks(table: VehicleTable) -> dict[str, str] | None:

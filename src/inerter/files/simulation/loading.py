@@ -79,7 +79,7 @@ def _needs(request: SimulationRequest) -> Iterator[Problem]:
     if kind.of_roads and signal.unit != "m":
         yield at(
             ("signal", "kind"),
-            got=f"{quote_value(signal.kind)} for the force {signal.input}",
+            got=f"{quote_value(signal.kind)} for {signal.input}",
             fault="it is the shape of a road",
             expected="another kind, or no input",
         )

@@ -76,8 +76,9 @@ class SimulationRequest(SimulationSettings):
         return () if self.line is None else (self.line.note, *self.line.warnings)
 
     def design(self) -> Vehicle:
-        """The vehicle, or rig, with the chosen layout."""
-        return self.layouts[self.layout].design(self.vehicle, self.elements)
+        """The vehicle, or rig, with the chosen layout; on moving ground if the signal is its acceleration."""
+        found = self.layouts[self.layout].design(self.vehicle, self.elements)
+        return found.mechanism().on_moving_ground() if self.signal.unit == "m/s^2" else found
 
     def make_signal(self) -> Signal:
         """The signal, of two tracks that of the left; raises `SignalError` as `signals` does."""

@@ -66,8 +66,10 @@ class SimulationResult:
 
     @property
     def displacements(self) -> tuple[str, ...]:
-        """Name of the load-carrying output of a vehicle without comfort outputs; else empty."""
+        """Name of the load-carrying output of a vehicle without comfort outputs, over moving ground; else empty."""
         answer = self.mechanism.measures.load_output
+        if answer is not None and self.mechanism.ground_moves:
+            answer = f"{answer.removesuffix('_displacement')}_relative_displacement"
         return () if answer is None or self.accelerations else (answer,)
 
     @property

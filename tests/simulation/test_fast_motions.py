@@ -64,6 +64,17 @@ def test_a_trajectory_in_divided_steps_has_the_samples_of_one_in_whole_steps(giv
         np.testing.assert_allclose(divided[name], whole[name], rtol=0.0, atol=1e-9 * np.abs(whole[name]).max())
 
 
+@pytest.mark.parametrize("strut", [SLOW, FAST])
+@pytest.mark.parametrize("road", ROADS)
+def test_a_batch_squares_the_samples_after_those_that_it_discards(strut, road):
+    car = it.QuarterCar(sprung_mass=181.75, unsprung_mass=25, tyre_stiffness=120e3, strut=strut)
+    outputs = ["sprung_acceleration", "tyre_load"]
+    batch = it.simulate_many([car], road=[ROADS[road]], outputs=outputs, duration=0.5, step=STEP, discard=0.25)
+    run = it.simulate(car, road=ROADS[road], duration=0.5, step=STEP)
+    expected = [np.mean(run[name][251:] ** 2) for name in outputs]
+    np.testing.assert_allclose(batch.mean_square[0, 0], expected, rtol=1e-9)
+
+
 def test_steps_that_resolve_a_motion_stay_as_they_are():
     system, table = member(SLOW, ROADS["sine"])
     assert event_driven.start_finely(system, table, np.zeros(system.order)).table is table

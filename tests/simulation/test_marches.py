@@ -29,7 +29,7 @@ def member(name: str) -> tuple[PiecewiseSystem, InputTable]:
 def started(name: str) -> event_driven.Integration:
     system, table = member(name)
     outputs = ["sprung_acceleration", "tyre_load"]
-    return event_driven.start(system, table, np.zeros(system.order), outputs, settled=500)
+    return event_driven.start(system, table, np.zeros(system.order), outputs, discard=500)
 
 
 @pytest.mark.parametrize("name", MEMBERS)

@@ -121,8 +121,8 @@ def simulate_many(
     groups, count = groups_of(driven)
     joined = isinstance(initial, Trajectory)
     begin = initial.end if isinstance(initial, Trajectory) else 0.0
-    knots, skipped = whole_steps(duration, step), round(discard / step)
-    if not 0 <= skipped < knots:
+    steps, skipped = whole_steps(duration, step), round(discard / step)
+    if not 0 <= skipped < steps:
         part, whole = format_alike([discard, duration], "s")
         raise SimulationError(f"discard: {part} must be shorter than the duration, {whole}.")
     if executor is not None:
@@ -145,11 +145,13 @@ def simulate_many(
         table = tables[j].take(signals, delays, duration, step, begin, joined)
         with preparing:
             state, after = initial_state(system, table.value[0], initial, table.slope[0]), ending_of(initial)
-            integration = event_driven.start(system, table, state, names, keep=False, settled=skipped, after=after)
-        integration.advance(table.time.size - 1)
+            integration = event_driven.start_finely(
+                system, table, state, names, keep=False, discard=skipped, after=after
+            )
+        integration.advance(integration.table.time.size - 1)
         events[i, j], status[i, j] = integration.events, integration.status
         if integration.status.ok:
-            squares[i, j] = integration.record.squares / (knots - skipped)
+            squares[i, j] = integration.record.squares / (steps - skipped)
 
     runs = [(i, j) for j in range(count) for i in range(len(cars))]
     waiting, done = iter(runs), count_from(1)

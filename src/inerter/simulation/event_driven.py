@@ -247,13 +247,13 @@ def start(
     *,
     keep: bool = True,
     account: bool = False,
-    settled: int = 0,
+    discard: int = 0,
     after: FinalState | None = None,
 ) -> Integration:
     """An integration at its beginning.
 
-    `keep` the states at all samples; `outputs` are to be squared and added up from knot `settled` on; `account` for
-    the energy. It goes on in the mode in which another one of the same mechanism ended, if it comes `after` one.
+    `keep` the states at all samples; `outputs` are to be squared and added up after sample number `discard`; `account`
+    for the energy. It goes on in the mode in which another one of the same mechanism ended, if it comes `after` one.
 
     Raises `SimulationError` as `check_elements` does.
     """
@@ -270,7 +270,7 @@ def start(
         modes=own_modes(machine.modes),
         begun=state,
         used=machine.used,
-        motion=_motion(system, state, settled),
+        motion=_motion(system, state, int(np.flatnonzero(table.slot == discard)[0])),
         room=_room(sizes, table.value.shape[1], room_of(machine.march.shape)),
         knots=knots(table),
         record=_record(sizes, state, table.samples if keep else 0),

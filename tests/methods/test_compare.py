@@ -15,7 +15,7 @@ from wang_su import J1, J3, ROAD, paper_half_car, paper_quarter_car
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, Norm, Spring, TyreLoad
 from inerter.errors import OK, Status, StatusKind
-from inerter.methods.averages import mean_and_error
+from inerter.methods.averages import CONFIDENCE, NORMAL_QUANTILE, mean_and_error
 from inerter.methods.compare import Comparison, Difference, compare_estimates, difference_of
 from inerter.methods.linear import CONVENTIONS, with_convention_filters
 from inerter.methods.method import Estimate
@@ -291,3 +291,7 @@ def test_first_order_is_silent_where_it_knows_nothing():
     assert ExpectedValue().controls(series(10.0), it.LoadCarrying(1000.0), 2) is None
     nothing = ExpectedValue().controls(series(0.0), J1, 2)
     assert [part.tolist() for part in nothing] == [[0.0] * 2, [0.0] * nothing[1].size]
+
+
+def test_the_normal_quantile_is_that_of_the_confidence_level():
+    assert scipy.stats.norm.interval(CONFIDENCE)[1] == pytest.approx(NORMAL_QUANTILE, rel=1e-15)

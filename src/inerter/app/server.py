@@ -72,7 +72,7 @@ class Server:
                 await self.check(study)
 
     async def check(self, study: dict[str, Any]) -> bytes:
-        """What is to be known of a study document before any work."""
+        """Problems, places and struts of a study document, found without computing an index."""
         settings = study.get("study")
         swept = isinstance(settings, dict) and bool(settings.get("sweep"))  # then layouts are tried at many values
         checking = Waiting((call, "inerter.app.study_check:check_document", study))

@@ -19,10 +19,10 @@ from inerter.files.common.suggest import some
 from inerter.files.study.chosen_design import load_results
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import RESOLVED
+from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.statements import Severity, Statement
 
 _EQUAL = 2e-9  # relative difference of equally good values
-_NORMAL = 1.96  # standard errors in half of a 95 % confidence interval
 _COMMON = ("layout", "index", "method")
 _VARIABLES = ("value", "standard_error", "error_bound", "status", "parameter_value", "parameter_low", "parameter_high")
 _NOT_ASKED = {"title"}  # entries of a study that change no number
@@ -154,7 +154,7 @@ def _value_changes(first: xr.Dataset, second: xr.Dataset, *whole: xr.Dataset) ->
                 units[0][index],
                 values[0],
                 values[1],
-                bounds[0] * abs(values[0]) + bounds[1] * abs(values[1]) + _NORMAL * hypot(*errors),
+                bounds[0] * abs(values[0]) + bounds[1] * abs(values[1]) + NORMAL_QUANTILE * hypot(*errors),
                 (str(both[0]["status"].item()), str(both[1]["status"].item())),
                 dict(_parameter_changes(*both)),
             )

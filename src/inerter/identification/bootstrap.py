@@ -23,10 +23,11 @@ from scipy.optimize import brentq
 from scipy.stats import chi2, norm
 
 from inerter.identification.experiment import Experiment
-from inerter.identification.intervals import LEVEL, ROBUST, BestFit, steps_of
+from inerter.identification.intervals import ROBUST, BestFit, steps_of
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.search import improve
 from inerter.identification.sensors import source_of
+from inerter.methods.averages import CONFIDENCE, NORMAL_QUANTILE
 from inerter.work.progress import counter
 
 Matrix = NDArray[np.float64]
@@ -96,14 +97,15 @@ def _widening_table(draws: int) -> Matrix:
     step = np.linspace(0.0, np.log(1e7), 2001)  # of the logarithm of the true ratio
     true = np.append(1.0, np.exp(step))
     prior = np.append(0.5, 0.25 * np.exp(-0.5 * step) * step[1])
-    quantile = norm.ppf(0.5 + 0.5 * LEVEL)
 
     def widening(ratio: float) -> float:
         likelihood = chi2.logpdf(freedom * ratio / true, freedom) - np.log(true)
         weight = prior * np.exp(likelihood - likelihood.max())
 
         def excess_miss_probability(factor: float) -> float:
-            return float(2.0 * weight @ norm.sf(factor * quantile / np.sqrt(true)) / weight.sum() - (1.0 - LEVEL))
+            return float(
+                2.0 * weight @ norm.sf(factor * NORMAL_QUANTILE / np.sqrt(true)) / weight.sum() - (1.0 - CONFIDENCE)
+            )
 
         return float(brentq(excess_miss_probability, 0.5, 1e4) ** 2)
 

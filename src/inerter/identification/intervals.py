@@ -14,6 +14,7 @@ from scipy.stats import t as student
 
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.search import improve
+from inerter.methods.averages import CONFIDENCE
 from inerter.work.progress import counter
 from inerter.work.running import over_threads
 
@@ -24,7 +25,6 @@ _BLOCKS = 40
 _FOLLOWING, _SEARCHING, _RETURNING = 3, 8, 8
 _RETURNED = 1e-5  # relative change of the cost that ends a return to the profile
 _BENT = 1.25  # times the rise of a linear model: a profile that rises more is followed with derivatives near there
-LEVEL = 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class BestFit:
     @property
     def threshold(self) -> Matrix:
         """Rise of each profile at the ends of its 95 % confidence interval."""
-        quantile = float(student.ppf(0.5 + 0.5 * LEVEL, max(self.samples - self.point.size, 1)))
+        quantile = float(student.ppf(0.5 + 0.5 * CONFIDENCE, max(self.samples - self.point.size, 1)))
         return 0.5 * quantile**2 * self.variance * self.widening
 
 

@@ -37,7 +37,7 @@ class Whitening:
         weight = self.weight[:size] if residual.ndim == 1 else self.weight[:size, None]
         white = weight * residual
         if self.centre.size or self.lines is not None:
-            padded, frequency = _padded(size), lines_of(size)
+            padded, frequency = _padded_size(size), lines_of(size)
             spectrum = np.ones(frequency.size) if self.lines is None else np.sqrt(self.lines)
             if self.centre.size:
                 spectrum = spectrum * np.exp(0.5 * np.interp(frequency, self.centre, np.log(self.density)))
@@ -55,10 +55,10 @@ class Whitening:
 
 def lines_of(size: int) -> Matrix:
     """Frequencies, in cycles a sample, of the lines at which so many samples are whitened."""
-    return np.asarray(np.fft.rfftfreq(_padded(size)))
+    return np.asarray(np.fft.rfftfreq(_padded_size(size)))
 
 
-def _padded(size: int) -> int:
+def _padded_size(size: int) -> int:
     return int(next_fast_len(size + size // 8, real=True))
 
 

@@ -13,21 +13,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import norm
 
 from inerter.formatting import format_number
 from inerter.identification.experiment import Experiment
-from inerter.identification.intervals import LEVEL, ROBUST, BestFit, steps_of
+from inerter.identification.intervals import ROBUST, BestFit, steps_of
 from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
 from inerter.identification.search import improve
+from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import LinearRole
 from inerter.records.record import Record
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS = 8
-_QUANTILE = float(norm.ppf(0.5 + 0.5 * LEVEL))
 _POWERS = {  # of the force's and of the displacement's scale in the value of an element: true over read
     LinearRole.STIFFNESS: (1.0, -1.0),
     LinearRole.DAMPING: (1.0, -1.0),
@@ -56,7 +55,7 @@ class ScaleEffects:
 
     def width(self, i: int) -> float:
         """The width of a 95 % interval from these uncertainties alone."""
-        return 2.0 * _QUANTILE * float(self.errors[i])
+        return 2.0 * NORMAL_QUANTILE * float(self.errors[i])
 
     def widen(
         self, i: int, interval: tuple[float, float], best: float, known: tuple[bool, bool]
@@ -66,8 +65,8 @@ class ScaleEffects:
         Two known ends are widened by the root of the sum of squares. A single end, which is not a distance from an
         estimate, is moved by all of the error of the scale.
         """
-        error = _QUANTILE * float(self.errors[i])
-        alone = _QUANTILE * float(self.relative[i])
+        error = NORMAL_QUANTILE * float(self.errors[i])
+        alone = NORMAL_QUANTILE * float(self.relative[i])
         both, (low, high) = all(known), interval
         if known[0]:
             low = best - math.hypot(max(best - low, 0.0), error) if both else low * (1.0 - alone)

@@ -21,6 +21,7 @@ from inerter.identification.response import linear_response, model_response
 from inerter.identification.statements.findings import FitFinding
 from inerter.identification.statements.friction import FrictionLaw
 from inerter.identification.statements.identifiability import Identifiability, Verdict
+from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.networks.elements import Element, Free, Network, free
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import map_elements, with_values
@@ -217,7 +218,7 @@ def _with_value(device: Network, label: str, value: float | Free) -> Network:
 
 
 def _friction(law: FrictionLaw) -> tuple[Parameter, Identifiability]:
-    error = 0.5 * (law.interval[1] - law.interval[0]) / 1.96
+    error = 0.5 * (law.interval[1] - law.interval[0]) / NORMAL_QUANTILE
     interval = (max(law.interval[0], 0.0), law.interval[1])
     verdict = Identifiability(_FRICTION, Verdict.IDENTIFIED, "N", interval, role=LinearRole.OPEN)
     return Parameter(_FRICTION, "N", law.level, interval, law.level, error), verdict

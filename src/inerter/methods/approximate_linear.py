@@ -253,7 +253,7 @@ class ApproximateLinear(FormerMethodNames):
         drive = runs.drive
         if self._raw:
             return self._combine(definition, None, gains, drive), 0.0
-        left = 2.0 * runs.left
+        left = 2.0 * runs.remaining
         if linear is None or drive.excitation.is_held:
             alone = self._combine(definition, None, gains, drive, left)
             return replace(alone, notes=(_HELD if linear else _UNLIKE,)), 0.0

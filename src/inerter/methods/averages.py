@@ -7,6 +7,7 @@ import scipy
 from numpy.typing import NDArray
 
 CONFIDENCE = 0.95
+NORMAL_QUANTILE = 1.959963984540054  # standard errors in half of a confidence interval, for normal errors
 
 
 def mean_and_error(values: NDArray[np.float64]) -> tuple[float, float, tuple[float, float]]:
@@ -17,8 +18,7 @@ def mean_and_error(values: NDArray[np.float64]) -> tuple[float, float, tuple[flo
 
 def interval_of(mean: float, error: float, count: int) -> tuple[float, float]:
     """95 % confidence interval about the mean of `count` values: Student's t, or normal for fewer than two values."""
-    share = 0.5 + 0.5 * CONFIDENCE
-    # As `scipy.stats` has them, which takes a quarter of a second to load, in each process anew.
-    quantile = scipy.special.stdtrit(count - 1, share) if count > 1 else scipy.special.ndtri(share)
-    reach = float(quantile) * error
+    # As `scipy.stats` has it, which takes a quarter of a second to load, in each process anew.
+    quantile = float(scipy.special.stdtrit(count - 1, 0.5 + 0.5 * CONFIDENCE)) if count > 1 else NORMAL_QUANTILE
+    reach = quantile * error
     return mean - reach, mean + reach

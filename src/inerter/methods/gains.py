@@ -105,7 +105,7 @@ class Runs:
     status: Status = OK
     warning: Status = OK
     mismatch: float = 0.0  # the largest change of the state over a period that was recorded, relative to its size
-    left: float = 0.0  # the largest share of a motion that is left after a period
+    remaining: float = 0.0  # the largest share of a motion that remains after a period
     larger: Runs | None = None  # the same realisations at twice the size
 
     def upto(self, count: int) -> tuple[Array, Array]:
@@ -162,11 +162,11 @@ class Runs:
         if number == 0:
             check_holds(self.system, self.drive.signals(seed))
         table, power = self.drive.realisation(seed)
-        run, mismatch, left = recorded_period(self.system, table)
+        run, mismatch, remaining = recorded_period(self.system, table)
         if not run.status.ok:
             self.status = Status(StatusKind.FAILED, f"realisation {number + 1}: {run.status.message}")
             return
-        self.mismatch, self.left = max(self.mismatch, mismatch), max(self.left, left)
+        self.mismatch, self.remaining = max(self.mismatch, mismatch), max(self.remaining, remaining)
         if mismatch > _REPEATS:
             self.warning = Status(
                 StatusKind.INACCURATE,

@@ -244,7 +244,7 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
 
 def _left_over(found: Sequence[RoadRun]) -> float:
     """Share of a mean square that lines may miss, from what a period leaves of the simulated motion."""
-    return 2.0 * max(ran.steady.left for ran in found)
+    return 2.0 * max(ran.steady.remaining_share for ran in found)
 
 
 @dataclass(frozen=True, eq=False)

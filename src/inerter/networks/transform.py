@@ -176,7 +176,7 @@ class LinearisedNetwork:
         return tuple(element.label for element in self.closed)
 
     def notes(self, mount: str) -> list[str]:
-        """What the network at a mount has lost, in words."""
+        """Notes on the elements that the linearised network at a mount neglects."""
         return [
             *(f"{element.key} {element.label!r} in {mount!r} left out" for element in self.left_out),
             *(f"{element.key} {element.label!r} in {mount!r} taken as closed" for element in self.closed),

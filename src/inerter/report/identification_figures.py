@@ -24,13 +24,13 @@ from inerter.files.identification.running import IdentificationResult, Responses
 from inerter.formatting import choose_scale, format_quantity, format_range
 from inerter.identification.fit import Localisation, RecordFit
 from inerter.identification.statements.patterns import MisfitPattern
+from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.report.identified_values import ResultKind, result_kind, value_and_interval
 
 Matrix = NDArray[np.float64]
 _PERIODS = 4.0  # of the motion in a window that can be read
 _FEWEST = 30  # samples of a window
 _LAGS = 60
-_WHITE = 1.96  # standard deviations, that 95 % of white noise stay within
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +140,11 @@ def _autocorrelation(white: Matrix) -> tuple[Matrix, Matrix, float]:
     count = min(_LAGS, x.size // 4)
     square = max(float(x @ x), 1e-300)
     lags = np.arange(count + 1)
-    return lags.astype(float), np.array([float(x[k:] @ x[: x.size - k]) / square for k in lags]), _WHITE / x.size**0.5
+    return (
+        lags.astype(float),
+        np.array([float(x[k:] @ x[: x.size - k]) / square for k in lags]),
+        NORMAL_QUANTILE / x.size**0.5,
+    )
 
 
 def _profile(found: IdentificationResult, name: str) -> ProfileCurve | None:

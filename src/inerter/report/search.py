@@ -119,7 +119,7 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
     """The best network with real inerters by each method, and those without a reliable value."""
     asked = found.study.real_inerters
     if asked is not None and not any(each.network for each in one.real):
-        yield f"{capital(one.heading)} with real inerters: none of the best networks has an inerter."
+        yield f"{capital(one.heading)} with real inerters: the best networks contain no inerter."
     for method in asked.methods if asked is not None else ():
         own = [each for each in one.real if each.method == method and each.network]
         known = [each for each in own if isfinite(each.value)]

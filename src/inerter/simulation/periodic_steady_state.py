@@ -14,7 +14,7 @@ from inerter.simulation import event_driven
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable
-from inerter.simulation.trajectory import PeriodicState, left_of_motion
+from inerter.simulation.trajectory import PeriodicState, remaining_share_of
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
@@ -50,7 +50,7 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
 
     It repeats as well as the change of the state over it is small, relative to its size. From rest, one period (or the
     end of a long one) is gone through to settle, then others until the state repeats. How fast it does tells what is
-    left of a motion (see `left_of_motion`). `table` is one period that is repeated.
+    left of a motion (see `remaining_share_of`). `table` is one period that is repeated.
     """
     at = int(np.searchsorted(table.time, table.time[-1] - _SETTLING))
     state, begin = initial_state(system, table.value_before[at], "rest"), table.time[at]
@@ -69,7 +69,7 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
         run = event_driven.start(system, table, begun, after=run.ending)
         run.advance(last)
         mismatch, settled = run.mismatch(begun), begun_at + before
-    return run, mismatch, left_of_motion(mismatch, settled)
+    return run, mismatch, remaining_share_of(mismatch, settled)
 
 
 def settle(

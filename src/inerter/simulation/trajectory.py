@@ -85,13 +85,15 @@ class PeriodicState:
         return float(self.mismatch / (1.0 - self.mismatch ** (1.0 / self.periods)))
 
     @property
-    def left(self) -> float:
-        """Largest share of a motion that is left after one period; see `left_of_motion`."""
-        return left_of_motion(self.mismatch, self.periods - 1.0)
+    def remaining_share(self) -> float:
+        """Largest share of a motion that remains after one period; see `remaining_share_of`."""
+        return remaining_share_of(self.mismatch, self.periods - 1.0)
+
+    left = RenamedAttribute("remaining_share")
 
 
-def left_of_motion(mismatch: float, periods: float) -> float:
-    """Largest share of a motion that is left after one period, from the relative change of state over the last one.
+def remaining_share_of(mismatch: float, periods: float) -> float:
+    """Largest share of a motion that remains after one period, from the relative change of state over the last one.
 
     In the `periods` before that, the motion lacking at first, at least a tenth as large as the state, falls to the
     change. This is an upper bound for several modes, whose decays add up to less than the first of them alone would.

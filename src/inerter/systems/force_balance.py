@@ -76,6 +76,6 @@ def _on_forces(frame: Frame, row: Matrix) -> Matrix:
         at_once = ", ".join(node for node, lever in zip(frame.graph.nodes, row, strict=True) if lever)
         raise LinearSystemError(
             f"A force acts on {at_once}, which only springs hold: they follow it at once, and a force that jumps "
-            "leaves them no velocity. Give it a mass, or a damper beside a spring."
+            "leaves them no velocity. Give it a mass, or a damper in parallel with a spring."
         )
     return force

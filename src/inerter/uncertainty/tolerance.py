@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
-from inerter.methods.averages import CONFIDENCE
+from inerter.methods.averages import CONFIDENCE, NORMAL_QUANTILE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.conditions import OverConditions
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
@@ -231,7 +231,7 @@ def quantile_error(values: Array, share: float) -> tuple[float, tuple[float, flo
     ordered, count = np.sort(values), values.size
     low, high = (scipy.stats.binom.ppf(p, count, share) for p in (0.5 - 0.5 * CONFIDENCE, 0.5 + 0.5 * CONFIDENCE))
     interval = float(ordered[max(int(low) - 1, 0)]), float(ordered[min(int(high), count - 1)])
-    return (interval[1] - interval[0]) / (2.0 * float(scipy.special.ndtri(0.5 + 0.5 * CONFIDENCE))), interval
+    return (interval[1] - interval[0]) / (2.0 * NORMAL_QUANTILE), interval
 
 
 def with_scatter_of_values(

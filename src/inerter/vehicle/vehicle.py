@@ -176,7 +176,7 @@ def check_free_quantities(of: VehicleModel | Stage) -> None:
             if names.count(name) > 1:
                 raise DesignError(
                     f"{name!r} is free in two parts of the vehicle: they would be one value. Fix one of them, or give "
-                    "it a name of its own."
+                    "it another name."
                 )
         check_named_apart({*names}, chain.from_iterable(map(_given_networks, parts)), "a quantity of the vehicle")
 

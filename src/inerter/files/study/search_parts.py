@@ -160,7 +160,7 @@ class RealPart(StudyPart["RealResult"]):
         assert study.real_inerters is not None
         real, friction = study.real_inerters.shaft, study.real_inerters.friction
         kept = estimate_of(with_real_inerters(self.found, real, friction), self.found.plan.index, method)
-        return self._optimised(
+        return self._result_of_search(
             optimise_with_real_inerters(self.found, method, friction=friction, real=real),
             kept=kept.value,
             kept_bound=kept.error_bound,
@@ -172,7 +172,7 @@ class RealPart(StudyPart["RealResult"]):
         layout = str(study.baseline)
         index, design = study.resolve_index(self.index, layout), study.design(layout)
         if self.method != study.optimise and design.free_values() and linear_notes(design.mechanism()):
-            return self._optimised(
+            return self._result_of_search(
                 optimise(design, index, method, subject_to=all_limits(study, layout), seed=study.seed)
             )
         estimate = estimate_of(best_design(study, designs, layout, self.index), index, method)
@@ -183,7 +183,7 @@ class RealPart(StudyPart["RealResult"]):
             error_bound=estimate.error_bound,
         )
 
-    def _optimised(self, best: Optimum, **more: Any) -> RealResult:
+    def _result_of_search(self, best: Optimum, **more: Any) -> RealResult:
         is_feasible = best.status.kind is not StatusKind.INFEASIBLE
         return self._result(
             value=best.value if is_feasible else nan,

@@ -18,7 +18,8 @@ from study_text import HALF_CAR, assert_refused, load_text, study_text
 
 import inerter as it
 from inerter.files.study.cases import Outcome, cases, run_case
-from inerter.files.study.results import CONDITION, IN_CONDITIONS, dataset
+from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
+from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.searching import search_study
 from inerter.files.study.study import Study

@@ -19,7 +19,7 @@ from inerter.figures.labels import (
     layouts,
     one_method,
 )
-from inerter.files.study.results import CONDITION, IN_CONDITIONS
+from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.files.study.sections import OVER
 from inerter.formatting import choose_scale, format_list, format_share

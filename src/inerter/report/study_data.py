@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import swept_places
-from inerter.files.study.results import CONDITION, IN_CONDITIONS
+from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
 from inerter.files.study.running import StudyResult
 from inerter.files.study.summary import design_rows
 from inerter.files.study.tasks import by_task

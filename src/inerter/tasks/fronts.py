@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from inerter.errors import StatusKind
 from inerter.files.common.problem import Problem, at
-from inerter.files.study.conditions import condition_labels
+from inerter.files.study.conditions import CONDITION, condition_labels
 from inerter.files.study.limits import all_limits
 from inerter.files.study.method_labels import method_labels
-from inerter.files.study.results import CONDITION
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults
 from inerter.formatting import format_count, format_list, format_quantity, label_with_unit

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import inerter
 from inerter.errors import StatusKind
 from inerter.files.study.cases import Case, Outcome, cases
-from inerter.files.study.conditions import condition_labels
+from inerter.files.study.conditions import CONDITION, IN_CONDITIONS, condition_labels
 from inerter.files.study.limits import each_of, is_swept, limit_text
 from inerter.files.study.method_labels import limit_basis, method_labels
 from inerter.files.study.notes import Notes, road_notes
@@ -334,7 +334,7 @@ SPEEDS: dict[str, _Variable] = {
     "at_speeds.value": (("at_speeds.speed",), np.nan, "index of the same design at other speeds"),
     "at_speeds.message": ((), "", "what makes those values doubtful"),
 }
-IN_CONDITIONS, CONDITION = "in_conditions.", "in_conditions.condition"
+
 _VARIED = ("value", "standard_error", "error_bound", "improvement", "improvement_bound", "improvement_error")
 PERCENT = {"limit_cost", "over_linear", "over_linear_error"} | {
     f"{of}improvement{end}" for of in ("", IN_CONDITIONS) for end in ("", "_bound", "_error")

@@ -11,8 +11,8 @@ import xarray as xr
 
 from inerter.atomic_io import open_text
 from inerter.files.study.cases import Case, cases
-from inerter.files.study.conditions import condition_labels
-from inerter.files.study.results import IN_CONDITIONS, PERCENT, UNCERTAIN, by_case, is_uncertain
+from inerter.files.study.conditions import IN_CONDITIONS, condition_labels
+from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
 from inerter.files.study.study import Study
 from inerter.formatting import label_with_unit
 from inerter.table import csv_cells

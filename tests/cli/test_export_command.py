@@ -203,7 +203,7 @@ def test_friction_is_refused_in_a_sentence(folder: Path, capsys: pytest.CaptureF
         (["car.toml", "--to", "matlab", "--index", "J1", "--layout", "S9"], 'has no layout "S9", but S3.'),
         (["car.toml", "--to", "matlab", "--index", "J1", "--point", "2"], "has no sweep"),
         (["car.toml", "--to", "excel", "--index", "J1"], 'Unknown kind of export "excel"; available: matlab, csv, '),
-        (["car.toml", "--to", "Simulink", "--index", "J1"], "spice, svg, pdf, latex. Try: --to fmu"),
+        (["car.toml", "--to", "Simulink", "--index", "J1"], "svg, pdf, latex, simulation. Try: --to fmu"),
         (["car.toml", "--to", "matlba", "--index", "J1"], 'Did you mean "matlab"?'),
         (["car.toml", "--to", "control", "--index", "J1"], "is an object of Python"),
         (["car.toml", "--to", "matlab", "--index", "J1", "-o", "car.txt"], "suffix .mat or .m."),

@@ -161,6 +161,7 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     f"{EXPORTED} matlab": nothing,
     f"{EXPORTED} modelica -o car.mo": nothing,
     f"{EXPORTED} fmu --part strut": nothing,
+    f"{EXPORTED} simulation": nothing,
     "inerter plot examples/quarter-car.toml --kind bode --index J1": nothing,
     "inerter plot examples/stick_slip.toml --kind trajectory --window 1:3": nothing,
 }

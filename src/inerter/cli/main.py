@@ -336,13 +336,16 @@ def rig(
   inerter export quarter-car-results --layout S3 --index J1 --to modelica
   inerter export my-car.toml --layout real --to spice --linear
   inerter export my-car.toml --to fmu --part strut
-  inerter export my-coach.toml --to fmu --speed "25 m/s\""""
+  inerter export my-coach.toml --to fmu --speed "25 m/s"
+  inerter export quarter-car-results --layout S3 --index J1 --to simulation"""
 )
 def export(
     source: Path,
     /,
     *,
-    to: Annotated[str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex.")],
+    to: Annotated[
+        str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex, simulation.")
+    ],
     layout: Annotated[str | None, Parameter(help="Layout; optional if there is only one.")] = None,
     index: BestFor = None,
     point: SweepPoint = None,
@@ -353,7 +356,7 @@ def export(
     ] = (),
     part: Annotated[str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")] = "",
     speed: Annotated[
-        str | None, Parameter(help='Speed of an FMU with one road for all axles, such as "25 m/s"; it is a parameter.')
+        str | None, Parameter(help='Speed of an FMU with one road for all axles, or of a simulation, such as "25 m/s".')
     ] = None,
     platform: Annotated[
         tuple[str, ...],
@@ -373,7 +376,7 @@ def export(
     ] = None,
     force: ForceFile = False,
 ) -> None:
-    """Export a design to another program: matrices, Modelica source, a netlist, tables, or a drawing.
+    """Export a design to another program: matrices, Modelica source, a netlist, tables, a drawing, a simulation file.
 
     Design variables have the values of the best design for the index, read from a
     folder of results or computed from a study file.

@@ -8,6 +8,7 @@ from inerter.exports.kind import ExportKind
 from inerter.exports.matlab import MATLAB
 from inerter.exports.modelica import MODELICA
 from inerter.exports.python_objects import CONTROL, SCIPY
+from inerter.exports.simulation_file import SIMULATION
 from inerter.exports.spice import SPICE
 from inerter.exports.tables import CSV, NETCDF
 from inerter.registry import Registry
@@ -16,5 +17,5 @@ EXPORTS: Registry[ExportKind] = Registry(
     "kind of export",
     "key",
     ("description", "suffixes", "make"),
-    (CONTROL, SCIPY, MATLAB, CSV, NETCDF, MODELICA, FMU, FMU3, SPICE, SVG, PDF, LATEX),
+    (CONTROL, SCIPY, MATLAB, CSV, NETCDF, MODELICA, FMU, FMU3, SPICE, SVG, PDF, LATEX, SIMULATION),
 )

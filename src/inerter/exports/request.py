@@ -130,6 +130,11 @@ class ExportSpec:
             raise ExportError(f"Frequencies must be positive numbers of Hz, got {self.frequencies!r}.")
         return np.asarray(given, dtype=float)
 
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle; raises `ExportError` if it is none."""
+        return self._vehicle("a vehicle")
+
     def _vehicle(self, wanted: str) -> Vehicle:
         """The exported object as a vehicle; raises `ExportError` if it is none."""
         if isinstance(self.of, type) or not callable(getattr(self.of, "mechanism", None)):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from campaigns import sampled
@@ -9,7 +11,10 @@ from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, Spring
-from inerter.errors import PerformanceIndexError
+from inerter.errors import OK, PerformanceIndexError
+from inerter.methods.harmonic_response import local_maxima
+from inerter.methods.steady_squares import Squares
+from inerter.simulation.trajectory import PeriodicState
 
 k, shaft = Spring(120e3), Spring(1e6) | Damper(3200.0)
 J5 = LoadCarrying(1000.0)
@@ -56,6 +61,30 @@ def test_every_maximum_of_a_fine_scan_is_there(design):
         assert scan[i] * (1.0 - 1e-5) <= near[0].gain <= scan[i] * 1.03
     for peak in (peak for peak in found.peaks if peak.omega > 0.0):
         assert peak.gain == pytest.approx(gain(design(), peak.omega / (2.0 * np.pi)), rel=1e-4)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.002, 1.02])
+def test_a_peak_where_two_ranges_of_the_search_meet_is_found(ratio):
+    at, repeats = 9.3, PeriodicState(1.0, 1, 0.0)
+    squares = Squares(np.ones(1), OK, repeats, np.zeros(1), np.ones(1))
+
+    def resonance(omega):
+        return 1.0 / np.hypot(1.0 - (omega / at) ** 2, 0.04 * omega / at), squares
+
+    expected = np.array([0.7, at / ratio, at * ratio])
+    with ThreadPoolExecutor(1) as pool:
+        highest, *_ = local_maxima(resonance, expected, 0.1, pool)
+    assert 25.0 * (1.0 - 1e-4) < highest.peak.gain <= 25.0 * (1.0 + highest.missed) + 1e-2
+    assert highest.peak.omega == pytest.approx(at, rel=2e-3)
+
+
+@pytest.mark.campaign
+def test_with_backlash_no_sine_has_a_higher_gain():
+    stop = Gap(6.618e-3) - Spring(56.9e3)
+    car = it.QuarterCar(505.614, 33.588, 135.131e3, Spring(10.1279e3) | Damper(489.983) | stop)
+    found = it.evaluate(car, J5, SIMULATED)
+    assert found.status.ok
+    assert gain(car, 9.31 / (2.0 * np.pi)) <= found.value * (1.0 + found.error_bound)
 
 
 @pytest.mark.parametrize("design", sampled([series, backlash], [series]))

@@ -208,10 +208,11 @@ class ExpectedValue(FormerMethodNames):
             closed = close(linear.descriptor, {})
             poles = np.linalg.eigvals(closed.A)
             known = np.array([peak.omega for peak in linear.estimate({}).peaks if np.isfinite(peak.omega)])
-        expected = _expected_peaks(vehicle, index)
+        expected, visited = _expected_peaks(vehicle, index), None
         if expected is None:
-            expected = np.concatenate([coarse_maxima(forced, poles, pool), known])
-        summits = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool)
+            coarse, visited = coarse_maxima(forced, poles, pool)
+            expected = np.concatenate([coarse, known])
+        summits = local_maxima(forced, expected, float(frequency_grid(poles)[0]), pool, visited)
         weighted = tuple(replace(one.peak, gain=abs(output.weight) * one.peak.gain) for one in summits)
         status = worst_of(one.status for one in summits)
         value = np.nan if status.kind is StatusKind.FAILED else weighted[0].gain

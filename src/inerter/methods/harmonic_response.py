@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from math import pi, sqrt
@@ -64,6 +63,9 @@ class ForcedResponse:
         return sqrt(2.0 * float(found.power[0])) / self.amplitude, found
 
 
+Visited = dict[float, tuple[float, Squares]]  # ratio and mean squares by frequency [rad/s]
+
+
 @dataclass(frozen=True)
 class Summit:
     """A local maximum of the ratio; `missed` is what the search may have left of its height, relative to it."""
@@ -85,64 +87,90 @@ class Summit:
         return stepped, steady_state_error([self.found.steady], sqrt(2.0)), missed
 
 
-def local_maxima(forced: ForcedResponse, expected: Array, lowest: float, pool: Executor) -> list[Summit]:
+def local_maxima(
+    forced: ForcedResponse, expected: Array, lowest: float, pool: Executor, visited: Visited | None = None
+) -> list[Summit]:
     """Local maxima of the ratio near the expected frequencies [rad/s], the highest first.
 
-    One that is expected at zero is the ratio at `lowest`.
+    One that is expected at zero is the ratio at `lowest`. None of the frequencies `visited` before, or on the way, has
+    a higher ratio: around the highest of them is a maximum too, which the ranges of the search may have cut.
     """
     near = np.unique(expected[expected > 0.0])
     middles = np.sqrt(near[1:] * near[:-1])
     lower = np.maximum(near / _WITHIN, np.concatenate([[0.0], middles]))
     upper = np.minimum(near * _WITHIN, np.concatenate([middles, [np.inf]]))
-    found = list(pool.map(lambda ends: _summit(forced, *ends), zip(lower.tolist(), upper.tolist(), strict=True)))
-    peaks = [summit for summit in found if summit is not None]
+    ranges = list(zip(lower.tolist(), upper.tolist(), strict=True))
+    searched = list(pool.map(lambda ends: _search(forced, *ends), ranges))
+    summits = [_summit(points) for points in searched]
+    peaks = [one for one, (low, high) in zip(summits, ranges, strict=True) if _is_inside(one.peak.omega, low, high)]
     if near.size < expected.size or not peaks:
         ratio, squares = forced(lowest)
         beside = forced(2.0 * lowest)[0]
         peaks.append(Summit(GainPeak(0.0, ratio), squares, abs(beside / ratio - 1.0) if ratio else 0.0))
+    best = max(peaks, key=lambda summit: summit.peak.gain)
+    points = {omega: found for several in (visited or {}, *searched) for omega, found in several.items()}
+    if points and max(ratio for ratio, _ in points.values()) > (1.0 + best.missed) * best.peak.gain:
+        places = sorted(points)
+        i = places.index(_highest(points))
+        points |= _search(forced, places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)])
+        peaks.append(_summit(points))
     return sorted(peaks, key=lambda summit: -summit.peak.gain)
 
 
-def _summit(forced: ForcedResponse, lower: float, upper: float) -> Summit | None:
-    """Local maximum of the ratio between two frequencies; None if the search ends at one of them."""
-    visited: dict[float, tuple[float, Squares]] = {}
+def _search(forced: ForcedResponse, lower: float, upper: float) -> Visited:
+    """Ratios on the way to a maximum between two frequencies, which may be at one of them."""
+    visited: Visited = {}
 
     def depth(logarithm: float) -> float:
-        visited[logarithm] = forced(float(np.exp(logarithm)))
-        return -visited[logarithm][0]
+        omega = float(np.exp(logarithm))
+        visited[omega] = forced(omega)
+        return -visited[omega][0]
 
     ends = np.log(lower), np.log(upper)
-    found = scipy.optimize.minimize_scalar(depth, bounds=ends, method="bounded", options={"xatol": _NEAR})
-    at = float(found.x)
-    if min(at - ends[0], ends[1] - at) < 3.0 * _NEAR:
-        return None
-    height, squares = visited[at]
-    return Summit(GainPeak(float(np.exp(at)), height), squares, _above(visited, at) / max(height, 1e-300))
+    scipy.optimize.minimize_scalar(depth, bounds=ends, method="bounded", options={"xatol": _NEAR})
+    return visited
 
 
-def _above(visited: Mapping[float, tuple[float, Squares]], at: float) -> float:
+def _is_inside(omega: float, lower: float, upper: float) -> bool:
+    """Whether a search has not ended at one of the ends of its range."""
+    return bool(np.log(min(omega / lower, upper / omega)) >= 3.0 * _NEAR)
+
+
+def _highest(points: Visited) -> float:
+    return max(points, key=lambda omega: points[omega][0])
+
+
+def _summit(points: Visited) -> Summit:
+    """The highest of the frequencies that were visited."""
+    omega = _highest(points)
+    height, squares = points[omega]
+    return Summit(GainPeak(omega, height), squares, _above(points, omega) / max(height, 1e-300))
+
+
+def _above(points: Visited, omega: float) -> float:
     """Twice the rise of a parabola through the highest point and its neighbours over that point."""
-    places = sorted(visited)
-    i = places.index(at)
+    places = sorted(points)
+    i = places.index(omega)
     if not 0 < i < len(places) - 1:
         return 0.0
-    x = np.array(places[i - 1 : i + 2]) - at
-    (before, here, after) = (visited[place][0] for place in places[i - 1 : i + 2])
+    x = np.log(np.array(places[i - 1 : i + 2]) / omega)
+    (before, here, after) = (points[place][0] for place in places[i - 1 : i + 2])
     rises = (before - here) / x[0], (after - here) / x[2]
     curvature = (rises[1] - rises[0]) / (x[2] - x[0])
     slope = rises[0] - curvature * x[0]
     return float(-0.5 * slope**2 / curvature) if curvature < 0.0 else 0.0
 
 
-def coarse_maxima(forced: ForcedResponse, poles: Array, pool: Executor) -> Array:
+def coarse_maxima(forced: ForcedResponse, poles: Array, pool: Executor) -> tuple[Array, Visited]:
     """Approximate frequencies of the local maxima [rad/s], on a grid around the `poles` [rad/s] of the linear motion.
 
-    Zero stands for one below the grid.
+    Zero stands for one below the grid. Also the ratios on the grid.
     """
     grid = frequency_grid(poles)
-    ratios = np.array([ratio for ratio, *_ in pool.map(forced, grid.tolist())])
+    points = dict(zip(grid.tolist(), pool.map(forced, grid.tolist()), strict=True))
+    ratios = np.array([ratio for ratio, _ in points.values()])
     inner = 1 + np.flatnonzero((ratios[1:-1] >= ratios[:-2]) & (ratios[1:-1] > ratios[2:]))
-    return np.concatenate([grid[inner], np.zeros(1 if ratios[0] > ratios[1] else 0)])
+    return np.concatenate([grid[inner], np.zeros(1 if ratios[0] > ratios[1] else 0)]), points
 
 
 def frequency_grid(poles: Array) -> Array:

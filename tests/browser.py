@@ -23,6 +23,7 @@ _SHELL = (
 )
 _CHROMIUM = next((path for name in (_SHELL, "chromium", "chromium-browser") if (path := shutil.which(name))), None)
 _NONE = f"Pages are not tested: there is no Chromium (as root: apt-get install {_SHELL})."
+_NOWHERE_ELSE = "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"  # no other host is found
 _TOKEN = "a-token-of-the-tests-of-the-page-00"
 _READY = 240.0  # seconds, with kernels to compile
 
@@ -33,7 +34,7 @@ def launched_chromium() -> Iterator[Any]:
     if _CHROMIUM is None:
         pytest.skip(_NONE)
     with pytest.importorskip("playwright.sync_api").sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=_CHROMIUM, args=["--no-sandbox"])
+        browser = play.chromium.launch(executable_path=_CHROMIUM, args=["--no-sandbox", _NOWHERE_ELSE])
         yield browser
         browser.close()
 
@@ -185,13 +186,10 @@ def free_port() -> int:
         return int(listener.getsockname()[1])
 
 
-def guard(route: Any, window: Visitor) -> None:
-    url = route.request.url
-    if url.startswith(window.served.origin):
-        route.continue_()
-    else:
-        window.elsewhere.append(url)
-        route.abort()
+def note_requests(window: Visitor) -> None:
+    """Keep what a window asks of others than its server; to hold every request back for that took long."""
+    ours = (window.served.origin, f"blob:{window.served.origin}")
+    window.page.on("request", lambda asked: asked.url.startswith(ours) or window.elsewhere.append(asked.url))
 
 
 def wait_until(true: Callable[[], bool], seconds: float = 30.0) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Served, Visitor, free_port, guard, launched_chromium
+from browser import Served, Visitor, free_port, launched_chromium, note_requests
 from folders import EXAMPLES
 
 
@@ -48,6 +48,12 @@ def served(serve: Callable[..., Served]) -> Served:
     return serve(EXAMPLES / "quarter-car.toml")
 
 
+@pytest.fixture(scope="session")
+def nothing(serve: Callable[..., Served]) -> Served:
+    """A workbench without a study."""
+    return serve(None)
+
+
 @pytest.fixture
 def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
     """A function that opens a window, each of which must have asked nothing of any other host and met no fault."""
@@ -66,7 +72,7 @@ def visitors(chromium: Any) -> Iterator[Callable[..., Visitor]]:
         window.page.on(
             "console", lambda said: window.faults.append(said.text) if "Content Security" in said.text else None
         )
-        window.page.route("**/*", lambda route: guard(route, window))
+        note_requests(window)
         all_of_them.append(window)
         return window
 

@@ -150,9 +150,9 @@ def _number(page: Any) -> float:
     return float(str(page.get_attribute("[id='entry elements.c']", "title")).partition(" ")[0])
 
 
-def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors: Callable[..., Visitor]) -> None:
+def test_a_question_opens_by_the_keyboard(nothing: Served, visitors: Callable[..., Visitor]) -> None:
     """The first screen has a card for each example; a study that was left is offered the next time."""
-    visitor = visitors(serve(None)).visit()
+    visitor = visitors(nothing).visit()
     page = visitor.page
     names = [each["name"] for each in json.loads(visitor.served.get("examples"))["examples"]]
     wait_until(lambda: page.locator(".card").count() == len(names))
@@ -176,13 +176,13 @@ def test_a_question_opens_by_the_keyboard(serve: Callable[..., Served], visitors
 
 
 def test_a_record_without_a_study_is_shown_beside_a_quarter_car(
-    serve: Callable[..., Served], visitors: Callable[..., Visitor], tmp_path: Path
+    nothing: Served, visitors: Callable[..., Visitor], tmp_path: Path
 ) -> None:
     """Otherwise the first screen would show nothing of it."""
     record = tmp_path / "noise.csv"
     rows = (f"{i / 1000},{i % 7},{(i * i) % 11}" for i in range(400))
     record.write_text("time [s],displacement [mm],force [N]\n" + "\n".join(rows) + "\n")
-    visitor = visitors(serve(None)).visit()
+    visitor = visitors(nothing).visit()
     drop(visitor, record)
     visitor.page.wait_for_selector("text=noise.csv was read.")
     assert visitor.page.locator("#tab-rig").get_attribute("aria-selected") == "true"

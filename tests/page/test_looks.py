@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Served, Visitor
+from browser import Visitor
 from campaigns import sampled
 from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
@@ -101,9 +101,9 @@ def _looked_at(
 
 
 @pytest.mark.parametrize("name", sampled(STUDIES, often=["quarter-car"], kept=0))
-def test_looks(name: str, visitors: Any, serve: Callable[..., Served], served: Served, tmp_path: Path) -> None:
+def test_looks(name: str, visitors: Any, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     make = STUDIES[name]
-    here = served if make else serve(None)
+    here = request.getfixturevalue("served" if make else "nothing")
     faults: dict[tuple[str, ...], Any] = {}
     for theme, sizes in THEMES.items():
         visitor = visitors(here, color_scheme=theme).visit()

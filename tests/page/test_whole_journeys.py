@@ -76,12 +76,6 @@ BY_KEYBOARD = sampled(PEOPLE, seldom=[Mouse])  # of what is tested by mouse else
 BY_MOUSE = sampled(PEOPLE, seldom=[Keyboard])
 
 
-@pytest.fixture(scope="module")
-def nothing(serve: Callable[..., Served]) -> Served:
-    """A workbench without a study."""
-    return serve(None)
-
-
 def _entry(visitor: Visitor, place: str) -> Any:
     return visitor.page.locator(f"[id='entry {place}']")
 

@@ -18,7 +18,7 @@ from inerter.cli.commands import run as run_command
 from inerter.cli.options import WorkOptions
 from inerter.files.common.toml import as_toml
 from inerter.methods.registry import is_blind, refuses_gaps
-from inerter.tasks.margins import compliant_springs, usual_tolerances
+from inerter.tasks.margins import MarginRequest, _break_even, _trials, compliant_springs, usual_tolerances
 
 VALUES = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
 FEW = changed(study={"realisations": 2})
@@ -77,6 +77,22 @@ def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> Non
     assert by["inerter_k"]["method"] == "norm"
     value = by["inerter_k"]["value"]
     assert (np.nan if value is None else value) == pytest.approx(shaft.value, rel=1e-9, nan_ok=True)
+
+
+def test_elements_of_a_real_inerter_have_words_and_no_names() -> None:
+    """A message on an element that the study lacks does not name it."""
+    layouts = {"S1": "k | c", "S2": "k | c | b"}
+    study = study_from({**DOCUMENT, "layouts": layouts})
+    values = {"S1": {"c": 1500.0}, "S2": {"c": 1500.0, "b": 20.0}}
+    design, baseline = (study.design(name).with_values(values[name]) for name in ("S2", "S1"))
+    asked = MarginRequest(study, "S2", design, "S1", baseline, "J1", "norm")
+    friction, stiffness, backlash = _trials(asked)
+    told = _break_even(asked, stiffness)
+    assert stiffness.parameter not in told.sentence + told.message
+    assert told.sentence == f"Stiffness of the shaft of inerter b: S2 is better than S1 {told.message[21:]}."
+    assert told.message == "the design is better for no stiffness from 1 kN/m to 100 MN/m"
+    assert friction.in_words(f"friction {friction.parameter} is large, J1") == "friction is large, J1"
+    assert backlash.in_words(f"Gap {backlash.parameter!r} has inertia") == "backlash has inertia"
 
 
 @pytest.mark.marathon

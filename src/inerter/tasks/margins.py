@@ -5,6 +5,7 @@ Each is computed by a method that models what it is about; where the given one d
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, isnan, nan
@@ -139,6 +140,12 @@ class _Trial:
         """The element, or the first of several with its label."""
         return next(one for one in self.design.mechanism().strut_elements() if one.label == self.parameter)
 
+    def in_words(self, message: str) -> str:
+        """Message in which an element of a real inerter has its words in place of its label, which is in no study."""
+        if self.is_present:
+            return message
+        return re.sub(rf"(?:{self.element.key} )?'?\b{re.escape(self.parameter)}\b'?", self.brief, message, flags=re.I)
+
 
 def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: None) -> Margins:
     """Margins of a design: each friction, gap and compliance that it has or a real inerter has, speeds, tolerances."""
@@ -247,7 +254,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
             trial.design, asked.baseline, study.over_conditions(asked.index), trial.parameter, by
         )
     except FAILURES as error:
-        message = str(error).rstrip(".")
+        message = trial.in_words(str(error)).rstrip(".")
         sentence = f"{capital(trial.words)}: break-even value not computed ({message})."
         return BreakEvenMargin(
             trial.parameter,
@@ -263,7 +270,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
             "",
             sentence,
         )
-    known, short = isfinite(found.value), ""
+    known, short, message = isfinite(found.value), "", trial.in_words(found.status.message)
     who = f"{asked.layout} is better than {asked.baseline_layout}"
     if known:
         ends = [crossing.value for crossing in found.crossings]
@@ -272,10 +279,10 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         short = f"{trial.brief} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
     else:
-        end = found.status.message.replace("the design is better", who).rstrip(".")
+        end = message.replace("the design is better", who).rstrip(".")
         sentence = f"{capital(trial.words)}: {end}."
     is_sure = found.status.severity is Severity.INFO
-    doubt = f" Not certain: {found.status.message.rstrip('.')}." if known and not is_sure else ""
+    doubt = f" Not certain: {message.rstrip('.')}." if known and not is_sure else ""
     return BreakEvenMargin(
         trial.parameter,
         trial.is_present,
@@ -286,7 +293,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         found.interval if all(map(isfinite, found.interval)) else None,
         number_or_none(found.error_bound),
         found.status.kind.value,
-        found.status.message,
+        message,
         short,
         f"{sentence}{doubt}",
     )

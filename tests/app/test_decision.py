@@ -177,9 +177,35 @@ def test_a_design_that_is_worse_in_a_condition_is_said_to_be(client: TestClient,
     first, second = (_improvement(client, document) for document in (plain, there))
     assert second < -0.5 < 0.5 < first
     told = ask(client, "panel/decision", study={**plain, "conditions": [{"share": share}, slowly]}, index="J1")
-    assert told["rows"][0]["layout"] == "S3"
+    best, base = told["rows"]
+    assert (best["layout"], base["layout"]) == ("S3", "S1")
+    assert [(one["name"], one["share"]) for one in best["in_conditions"]] == [
+        ("1", share / (share + 1.0)),
+        ("laden", 1.0 / (share + 1.0)),
+    ]
+    assert [one["improvement_percent"] for one in best["in_conditions"]] == pytest.approx([first, second])
+    assert [one["improvement_percent"] for one in base["in_conditions"]] == [None, None]
+    for row in told["rows"]:
+        each = [(one["share"], one["value"]) for one in row["in_conditions"]]
+        assert sum(part * value for part, value in each) == pytest.approx(row["value"])
     assert typeset(f"S3 is {-second:.1f} % worse than S1 in condition laden.") in sentences(told)
     assert not [text for text in sentences(told) if "in condition 1" in text]
+
+
+@pytest.mark.parametrize(("damping", "is_equal"), [(1500.0, True), (1502.0, True), (1505.0, False)])
+def test_what_the_verdict_calls_as_good_is_called_so_everywhere(
+    client: TestClient, damping: float, is_equal: bool
+) -> None:
+    """A difference that rounds to 0.0 % too, in the ranking and side by side."""
+    body = {"study": {**DOCUMENT, "layouts": {"S1": "k | c", "S2": "k | c"}}, "layouts": ["S1", "S2"]}
+    body["values"] = {"S1": {"c": 1500.0}, "S2": {"c": damping}}
+    told = ask(client, "panel/decision", **body)
+    row = next(one for one in told["rows"] if one["layout"] == "S2")
+    assert abs(row["improvement_percent"]) < 0.1
+    assert ("S2 is as good as S1" in sentences(told)[0]) == is_equal
+    assert row["tie"] == is_equal
+    first, second = (one["results"][0] for one in ask(client, "panel/compare", **body)["designs"])
+    assert (first["best"], second["best"], second["tie"]) == (True, is_equal, is_equal)
 
 
 def _improvement(client: TestClient, document: dict[str, Any]) -> float:

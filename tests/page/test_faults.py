@@ -405,3 +405,36 @@ def test_a_tolerance_that_the_method_neglects_has_no_number(visitor: Visitor) ->
     assert "%" not in row.inner_text()
     told = page.inner_text("#tab-panel")
     assert told.index("ignores the tolerance of f") < told.index("nominal")
+
+
+CONDITIONS = study_text(
+    'indices = ["J1", "J5"]',
+    vehicle=PAPER_CAR,
+    elements='k = "120 kN/m"\nc = "5 kN s/m"\nd = "7 kN s/m"\nb = "300 kg"\nf = "20 N"',
+    layouts='S1 = "k | c"\nS3 = "k | d - (b | f)"',
+    title='title = "Conditions"',
+)
+CONDITIONS += (
+    '[[conditions]]\nname = "empty"\nshare = 1\n[[conditions]]\nname = "loaded"\nroad.speed = "30 m/s"\nshare = 3\n'
+)
+
+
+def test_reasons_and_values_in_conditions_are_read_without_a_pointer(visitor: Visitor, tmp_path: Path) -> None:
+    """Why J5 of a strut with friction is not computed, and J1 of both struts in each condition."""
+    _open(visitor, tmp_path, "conditions", CONDITIONS)
+    page, rows = visitor.page, visitor.page.locator("[aria-label=Conditions] tbody tr")
+    _layout(visitor, "S3")
+    page.locator("[aria-label=Conditions] th:has-text('S1 [m/s²]')").wait_for()
+    assert rows.locator("th").all_inner_texts() == ["empty (25 %)", "loaded (75 %)"]
+    k, b = it.Spring(120e3), it.Inerter(300.0)
+    cars = (it.QuarterCar(181.75, 25.0, 120e3, strut=strut) for strut in (k | it.Damper(7e3) - b, k | it.Damper(5e3)))
+    comfort = [
+        [it.evaluate(car, it.RideComfort(it.Road(5e-7, v)), it.Norm()).value for v in (25.0, 30.0)] for car in cars
+    ]
+    values = rows.locator("[data-value]").evaluate_all("all => all.map(cell => Number(cell.dataset.value))")
+    assert values == pytest.approx([value for both in zip(*comfort, strict=True) for value in both])
+    page.locator(".answers select").first.select_option("statistical-linearisation")
+    reasons = page.locator("[aria-label=Reasons]")
+    reasons.wait_for()
+    assert reasons.inner_text().startswith("J5 of S3: failed: ")
+    assert "amplitude of the force" in reasons.inner_text()

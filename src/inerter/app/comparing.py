@@ -13,6 +13,7 @@ from inerter.app.designs import Design, baseline_of, designs_of, given_design
 from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell
+from inerter.decision.results import Improvement
 from inerter.errors import DesignError
 from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.parts import FAILURES
@@ -20,7 +21,9 @@ from inerter.files.study.place import element_at, place_of
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import format_quantity, shown_decimals
 from inerter.methods.compare import Comparison, compare
+from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.method import Estimate
+from inerter.validation import number_or_none
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
@@ -180,34 +183,43 @@ def _best(found: Sequence[DesignEstimate]) -> list[int]:
     if not finite:
         return []
     least = min(finite, key=lambda i: found[i].estimate.value)
-    beside = {i: found[i].beside(found[least]) for i in finite if i != least}
-    return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_tie)]
+    beside = {i: improvement_of(found[i].beside(found[least])) for i in finite if i != least}
+    return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_equal)]
 
 
 def describe_result(one: DesignEstimate, baseline: DesignEstimate | None) -> Answer:
     """Value and status of an index for an answer, with its improvement over the baseline; null if not comparable."""
     study, estimate = one.design.study, one.estimate
-    two = None if baseline is None else one.beside(baseline)
-    better, error = (None, None) if two is None else improvement_percent(two)
     return {
         "index": one.index,
         "title": study.index(one.index).title,
         "unit": study.unit(one.index),
         "method": one.method,
+        "notes": list(estimate.notes),
+        "realisations": estimate.realisations,
+        **describe_estimate(estimate, None if baseline is None else improvement_of(one.beside(baseline))),
+    }
+
+
+def describe_estimate(estimate: Estimate, by: Improvement | None) -> Answer:
+    """Value and status for an answer, with an improvement; null without one."""
+    return {
         "value": estimate.value,
         "standard_error": estimate.standard_error,
         "error_bound": estimate.error_bound,
         "decimals": shown_decimals(estimate.value, estimate.standard_error or np.nan, estimate.error_bound, _DIGITS),
         **estimate.status.to_json(),
-        "notes": list(estimate.notes),
-        "realisations": estimate.realisations,
-        "improvement_percent": better,
-        "improvement_error_percent": error,
-        "improvement_status": None if two is None else two.status.kind.value,
-        "tie": None if two is None else two.is_tie,
+        "improvement_percent": None if by is None else by.percent,
+        "improvement_error_percent": None if by is None else number_or_none(by.error),
+        "improvement_status": None if by is None else by.status.kind.value,
+        "tie": None if by is None else by.is_equal,
     }
 
 
-def improvement_percent(two: Comparison) -> tuple[float, float | None]:
-    """Improvement of the first design over the second [%], and its standard error; None without random roads."""
-    return -two.percent, None if two.first.standard_error is None else two.percent_error
+def improvement_of(two: Comparison | None) -> Improvement | None:
+    """Improvement of the first design over the second, in per cent of its value; None without a comparison."""
+    if two is None:
+        return None
+    bound = improvement_bound(two.first.value, two.second.value, two.first.error_bound, two.second.error_bound)
+    error = np.nan if two.first.standard_error is None else two.percent_error
+    return Improvement(-two.percent, error, bound, two.is_tie, two.status)

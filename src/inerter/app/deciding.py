@@ -8,20 +8,22 @@ from dataclasses import asdict, replace
 from math import isfinite, nan
 from typing import Any
 
-from inerter.app.comparing import DesignEstimate, describe_result, evaluate_design, improvement_percent
+from inerter.app.comparing import DesignEstimate, describe_estimate, describe_result, evaluate_design, improvement_of
 from inerter.app.designs import Design, baseline_of, designs_of, one_design, problem_digest
 from inerter.app.index_values import DesignLimit, limits_at
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult
 from inerter.files.study.conditions import condition_labels
+from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, typeset
-from inerter.methods.compare import Comparison, compare_estimates
-from inerter.methods.error_bounds import improvement_bound
+from inerter.methods.compare import compare_estimates
+from inerter.methods.method import Estimate
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
 from inerter.tasks.margins import margins as find_margins
+from inerter.validation import number_or_none
 
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
@@ -131,7 +133,11 @@ class _DesignComparison:
             name=design.name,
             goal=goal,
             others=tuple(others),
-            in_conditions=tuple(self._in_conditions(found[0])),
+            in_conditions=tuple(
+                (name, by)
+                for name, _, _, by in self._in_conditions(found[0])
+                if by is not None and isfinite(by.percent)
+            ),
             limits=tuple(one.result() for one in limits),
             unchosen=design.unchosen,
             at_bounds=at_bounds(design.free, design.values, self.study.free_units),
@@ -143,16 +149,19 @@ class _DesignComparison:
         self._known[id(made)] = design, found, limits
         return made
 
-    def _in_conditions(self, one: DesignEstimate) -> Iterator[tuple[str, Improvement]]:
-        """Improvement of the goal in each of several conditions."""
+    def _in_conditions(self, one: DesignEstimate) -> Iterator[tuple[str, float, Estimate, Improvement | None]]:
+        """Name, share (nan if none counts), goal and improvement over the baseline in each of several conditions."""
         base = self._base[0] if self._base else None
-        if base is None or one.design == self.baseline or one.beside(base) is None:
+        is_compared = base is not None and one.design != self.baseline and one.beside(base) is not None
+        conditions, own = self.study.conditions, one.estimate.in_conditions
+        if len(conditions) < 2 or not own:
             return
-        each = zip(one.estimate.in_conditions, base.estimate.in_conditions, strict=True)
-        for name, (own, other) in zip(condition_labels(self.study.conditions), each, strict=True):
-            by = improvement_of(compare_estimates(own, other))
-            if by is not None and len(self.study.conditions) > 1 and isfinite(by.percent):
-                yield name, by
+        whole = sum(condition.share for condition in conditions) if self.study.over == OVER[0] else nan
+        others = base.estimate.in_conditions if base is not None and is_compared else [None] * len(own)
+        each = zip(condition_labels(conditions), conditions, own, others, strict=True)
+        for name, condition, estimate, other in each:
+            by = None if other is None else improvement_of(compare_estimates(estimate, other))
+            yield name, condition.share / whole, estimate, by
 
     def over(self, one: DesignResult, other: DesignResult) -> Improvement | None:
         """Improvement of a design over another in the goal, on the same roads."""
@@ -175,6 +184,10 @@ class _DesignComparison:
             "is_baseline": result.is_baseline,
             "others": [{key: one[key] for key in keys} for one in told[1:]],
             "limits": [one.to_json() for one in limits],
+            "in_conditions": [
+                {"name": name, "share": number_or_none(share), **describe_estimate(estimate, by)}
+                for name, share, estimate, by in self._in_conditions(found[0])
+            ],
         }
 
     def _index_result(self, one: DesignEstimate, i: int) -> IndexResult:
@@ -191,12 +204,3 @@ class _DesignComparison:
             error_bound=estimate.error_bound,
             improvement=improvement_of(two),
         )
-
-
-def improvement_of(two: Comparison | None) -> Improvement | None:
-    """Improvement of the first design over the second; None without a comparison."""
-    if two is None:
-        return None
-    percent, error = improvement_percent(two)
-    bound = improvement_bound(two.first.value, two.second.value, two.first.error_bound, two.second.error_bound)
-    return Improvement(percent, nan if error is None else error, bound, two.is_tie, two.status)

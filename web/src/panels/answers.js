@@ -3,9 +3,9 @@
 import { methodChoice, unchosenIn } from "../library.js";
 import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
 import { indicesIn, nextLayout } from "../state/document.js";
-import { aligned, estimated, placed, scaled, unitFor, withUnit } from "../state/scale.js";
-import { DropDown, Select, formHandler } from "../parts/controls.js";
-import { isOk } from "../parts/doubts.js";
+import { aligned, estimated, placed, scaled, shown, unitFor, withUnit } from "../state/scale.js";
+import { DropDown, Select, Table, formHandler } from "../parts/controls.js";
+import { doubtsIn, isOk } from "../parts/doubts.js";
 import { html, useLayoutEffect, useMemo, useRef, useState } from "../parts/html.js";
 import { layoutColour } from "../plots/colours.js";
 import { useLate, useShown } from "../parts/clock.js";
@@ -21,14 +21,17 @@ export function AnswersPanel({ store }) {
   const answer = answerOf(state, "decision");
   const { value, sentence } = answer;
   useShown("decision", state);
+  const present = value?.rows.find((/** @type {any} */ { layout }) => layout === state.history.present.layout);
   return html`<section class="panel answers" aria-labelledby="answers-title" aria-busy=${answer.is === "coming"}
     data-being=${answer.is} data-keys="Ranking">
     <div class="head"><h2 id="answers-title">Layouts by ${goalOf(state) ?? "no index"}</h2>
       <${Select} aria-label="Method" ...${methodChoice(store)} /></div>
     ${sentence && problemsOf(state).length === 0 && html`<p class="problem pad" role="alert">${sentence}</p>`}
     <${Ranking} store=${store} answer=${answer} />
-    <${Limits} limits=${value?.rows.find((/** @type {any} */ row) =>
-      row.layout === state.history.present.layout)?.limits ?? []} />
+    ${present?.in_conditions.length > 0 && html`<${Conditions} state=${state} goal=${value.goal} row=${present}
+      baseline=${value.rows.find((/** @type {any} */ row) => row.is_baseline)} />`}
+    <${Reasons} rows=${value?.rows ?? []} goal=${value?.goal} />
+    <${Limits} limits=${present?.limits ?? []} />
     <${Layouts} store=${store} />
   </section>`;
 }
@@ -209,6 +212,32 @@ export function percent(value, error) {
 /** @param {{improvement_percent?: number | null, improvement_status?: string | null, tie?: boolean | null}} result */
 const better = ({ improvement_percent: value, improvement_status: status, tie }) =>
   (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
+
+/** The goal in each condition of the study: of the selected layout, and of the baseline if that is another one.
+ * @param {{state: State, goal: any, row: any, baseline: any}} props */
+function Conditions({ state, goal, row, baseline }) {
+  const both = [row, ...(baseline && baseline !== row ? [baseline] : [])];
+  const values = both.flatMap(({ in_conditions: each }) => each.map((/** @type {any} */ { value }) => value));
+  const { unit, factor } = unitFor(state.about, values, goal.unit);
+  const heads = [`${goal.index} in condition`, ...both.map(({ name }) => withUnit(name, unit)),
+    ...(both.length > 1 ? [`against ${baseline.name}`] : [])];
+  return html`<${Table} label="Conditions" class="conditions" heads=${heads}>
+    ${row.in_conditions.map((/** @type {any} */ own, /** @type {number} */ i) => html`<tr key=${own.name}>
+      <th scope="row">${own.name}${own.share !== null && html` <small>(${shown(100 * own.share, 3)} %)</small>`}</th>
+      ${both.map(({ name, in_conditions: each }) => html`<td class="number" key=${name}
+        data-value=${each[i].value}><${Measured} result=${scaled(each[i], factor)} /></td>`)}
+      ${both.length > 1 && html`<td class=${`number ${better(own)}`}>
+        <${Against} row=${{ ...own, status: null }} unchosen=${row.unchosen.length > 0} /></td>`}</tr>`)}<//>`;
+}
+
+/** Why values in the ranking are missing or unreliable, each reason once. @param {{rows: any[], goal: any}} props */
+function Reasons({ rows, goal }) {
+  const reasons = doubtsIn(rows.flatMap(({ name, others = [], ...own }) => [{ ...own, index: goal?.index }, ...others]
+    .filter(({ message }) => message).map(({ index, status, message }) => ({ of: `${index} of ${name}`, status,
+      message }))));
+  return reasons.length === 0 ? null : html`<ul class="limits" aria-label="Reasons">
+    ${reasons.map((reason) => html`<li key=${reason} class="bad">${reason}</li>`)}</ul>`;
+}
 
 /** Which limits the design satisfies. @param {{limits: any[]}} props */
 function Limits({ limits }) {

@@ -324,6 +324,20 @@ def test_each_place_that_is_told_can_be_swept(client: TestClient, name: str) -> 
         assert parse_quantity(row["text"], row["unit"]) == pytest.approx(row["value"], rel=1e-3)
 
 
+@pytest.mark.parametrize("name", ["absorber", "building_quake", "full-car"])
+def test_each_quantity_that_is_told_can_be_limited(client: TestClient, name: str) -> None:
+    """What `limitable` offers a constraint takes; where there is no road, nothing that is measured on one."""
+    document = example_tables(name)
+    told = {row["of"]: row for row in ask(client, "study/check", study=document)["limitable"]}
+    assert ("J1" in told, "suspension-travel" in told) == ("road" in document,) * 2
+    assert set(document.get("indices", {})) < set(told)
+    assert any("static stiffness of" in row["words"] for row in told.values())
+    for of, row in told.items():
+        limit = {"at_most": f"1 {row['unit']}" if row["unit"] else 1.0}
+        limits = {**document["study"].get("subject_to", {}), of: limit}
+        assert problems({**document, "study": {**document["study"], "subject_to": limits}}) == []
+
+
 def takes(document: dict[str, Any], place: str, value: float, unit: str, **_: Any) -> bool:
     """Whether a sweep of this place is accepted."""
     sweep = {place: {"from": f"{0.9 * value!r} {unit}", "to": f"{1.1 * value!r} {unit}", "points": 2}}

@@ -10,6 +10,7 @@ from inerter.errors import InerterError
 from inerter.files.common.problem import EntryError
 from inerter.files.common.problems import FileError
 from inerter.files.study.checking import check_study, study_notes
+from inerter.files.study.limits import limitable, limited_quantity_words
 from inerter.files.study.place import place_of
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import number_of
@@ -17,42 +18,56 @@ from inerter.formatting import format_quantity
 
 
 def check_document(document: object) -> dict[str, Any]:
-    """Problems and notes of a document, the networks of its layouts, and its numbers that can be swept.
+    """Problems and notes of a document, the networks of its layouts, and what can be swept and limited in it.
 
     A layout that is invalid leaves out itself only.
     """
     study: Study | None = None
+    searched: Study | None = None
     problems: list[dict[str, Any]] = []
     notes: list[str] = []
     try:
-        study, problems = _valid_part(document)
+        study, searched, problems = _valid_parts(document)
         if study is not None:
             check_study(study)
             notes = study_notes(study)
     except InerterError as error:
         problems = [*problems, *problems_of(error)]
-    if study is None:
-        return {"problems": problems, "notes": [], "layouts": {}, "places": []}
-    return {"problems": problems, "notes": notes, "layouts": _layouts(study), "places": _places(study)}
+    known = study or searched
+    return {
+        "problems": problems,
+        "notes": notes,
+        "layouts": {} if study is None else _layouts(study),
+        "places": [] if study is None else _places(study),
+        "limitable": [] if known is None else _limitable(known),
+    }
 
 
-def _valid_part(document: object) -> tuple[Study | None, list[dict[str, Any]]]:
-    """Study of a document without its invalid layouts, and the problems of these.
+def _valid_parts(document: object) -> tuple[Study | None, Study | None, list[dict[str, Any]]]:
+    """Study of a document without its invalid layouts, that with its free networks, and the problems.
 
-    Layouts with free networks are for a search, and no problems. None where no valid layout is left.
+    Layouts with free networks are for a search, and no problems. The first is None where no valid layout is left, the
+    second where anything is invalid.
     """
+    searched: Study | None = None
     problems: list[dict[str, Any]] = []
     try:
-        searched_study_from(document)
+        searched = searched_study_from(document)
     except FileError as error:
         problems = problems_of(error)
     try:
-        return study_from(document), problems
+        return study_from(document), searched, problems
     except FileError as error:
         assert isinstance(document, dict)
         with suppress(FileError):
-            return study_without(document, error)[0], problems
-        return None, problems
+            return study_without(document, error)[0], searched, problems
+        return None, searched, problems
+
+
+def _limitable(study: Study) -> list[dict[str, Any]]:
+    """Quantities that a limit may be on."""
+    units = limitable(study)
+    return [{"of": name, "words": limited_quantity_words(study, name), "unit": unit} for name, unit in units.items()]
 
 
 def _places(study: Study) -> list[dict[str, Any]]:

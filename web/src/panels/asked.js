@@ -4,10 +4,10 @@ import { numbersOf } from "../library.js";
 import { Chip, Field, Select, textHandler, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { freshName } from "../network/algebra.js";
-import { answerOf } from "../questions.js";
+import { answerOf, goalOf } from "../questions.js";
 import { entryAt, indicesIn, own } from "../state/document.js";
-import { printed } from "../state/scale.js";
-import { indexChoices, indexName } from "./answers.js";
+import { capital, printed } from "../state/scale.js";
+import { indexName } from "./answers.js";
 import { Entry } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -19,7 +19,6 @@ import { Entry } from "./values.js";
 
 const SENSES = ["at_most", "at_least", "equal"];
 const PLACE = ["study", "subject_to"];
-const STIFFNESS = "static-stiffness"; // of a strut, beside the indices
 
 /** @param {{store: Store}} props */
 export function AskedPanel({ store }) {
@@ -41,8 +40,11 @@ export function AskedPanel({ store }) {
  * @param {{store: Store}} props */
 export function Constraints({ store }) {
   const state = store.get();
-  const choices = limitable(state);
-  const [of = "", setOf] = useChoice(choices.map(([value]) => value));
+  const goal = goalOf(state);
+  /** @type {{of: string, words: string, unit: string}[]} what is minimised stands last */
+  const choices = (answerOf(state, "check").value?.limitable ?? []).toSorted(
+    (/** @type {any} */ one, /** @type {any} */ other) => Number(one.of === goal) - Number(other.of === goal));
+  const [of = "", setOf] = useChoice(choices.map(({ of }) => of));
   const [sense = "", setSense] = useChoice(SENSES);
   const [value, setValue] = useState("");
   /** @type {{of: string, sense: string, words: string}[]} */
@@ -58,12 +60,14 @@ export function Constraints({ store }) {
     if (value.trim()) place({ path: of.split("."), sense, value }, value.trim());
     setValue("");
   };
-  const unit = of.startsWith(STIFFNESS) ? "N/m" : kindOfIndex(state, of)?.unit;
+  /** @param {string} name */
+  const named = (name) => choices.find((each) => each.of === name);
+  const unit = named(of)?.unit;
   return html`<b class="legend">Constraints on every design</b>
     ${limitsOf(state).map((limit) => {
       const of = limit.path.join(".");
       const label = told.find((each) => each.of === of && each.sense === limit.sense)?.words
-        ?? `${choices.find(([value]) => value === of)?.[1] ?? of} ${limit.sense.replace("_", " ")}`;
+        ?? `${named(of)?.words ?? of} ${limit.sense.replace("_", " ")}`;
       const key = `${of} ${limit.sense}`;
       return html`<p class="row" key=${key}>${label} <${Entry} id=${`limit ${key}`} label=${label}
         text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
@@ -71,7 +75,8 @@ export function Constraints({ store }) {
           onClick=${() => place(limit, undefined)}>Delete</button></p>`;
     })}
     <div class="row">
-      <${Select} label="Add one on" name="of" value=${of} set=${setOf} choices=${choices} />
+      <${Select} label="Add one on" name="of" value=${of} set=${setOf}
+        choices=${choices.map(({ of, words }) => [of, capital(words)])} />
       <${Select} aria-label="Which side" name="sense" value=${sense} set=${setSense}
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
       <input class="entry" name="value" aria-label="How much, with its unit" autocomplete="off"
@@ -140,14 +145,6 @@ function indexNames(state) {
   const others = [...Object.keys(study.indices ?? {}), ...indicesIn(study)].filter((symbol) =>
     !known.some((/** @type {any} */ each) => each.symbol === symbol));
   return [...known, ...[...new Set(others)].map((symbol) => ({ symbol, title: symbol }))];
-}
-
-/** What a limit can be put on, for a `Select`. @param {State} state */
-function limitable(state) {
-  const layouts = Object.values(answerOf(state, "check").value?.layouts ?? {});
-  const struts = Object.keys(/** @type {any} */ (layouts[0])?.mounts ?? {});
-  return [...indexChoices(indexNames(state)), ...struts.map((strut) => [`${STIFFNESS}.${strut}`,
-    `static stiffness${struts.length > 1 ? ` of ${strut.replaceAll("_", " ")}` : ""}`])];
 }
 
 /** The limits of the study, as the library lists them. @param {State} state @returns {Limit[]} */

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from inerter.errors import InerterError
 from inerter.files.common.codec import Codec, KeyPath, RawEntry, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
 from inerter.files.common.entries import quantity_text
@@ -16,6 +18,7 @@ from inerter.files.common.suggest import nearest, some
 from inerter.formatting import format_quantity, format_share, in_words
 from inerter.indices.definition import quantity_words
 from inerter.indices.names import index_names, title_with_name
+from inerter.indices.registry import INDICES, needed_settings
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import constituents_of
 from inerter.methods.static_stiffness import static_stiffness
@@ -27,7 +30,7 @@ from inerter.vehicle.vehicle import Vehicle
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
-_STIFFNESS = "static-stiffness"
+_STIFFNESS, _STIFFNESS_UNIT = "static-stiffness", "N/m"
 _SENSES: dict[str, Callable[[IndexLike, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
 _EQUAL = "equal"
 _PLACE = ("study", "subject_to")
@@ -183,16 +186,33 @@ def _is_ratio(text: str | float) -> bool:
 def _unit(study: Study, of: str) -> str:
     """Unit of the limited quantity; raises `EntryError` if there is no such thing."""
     if of.partition(".")[0] == _STIFFNESS:
-        mounts = list(next(iter(study.layouts.values())).struts)
+        mounts = _mounts(study)
         if of.partition(".")[2] not in mounts:
             which = ", ".join(f"{_STIFFNESS}.{mount}" for mount in mounts)
             raise invalid_entry(of, fault="no strut of this vehicle", expected=which)
-        return "N/m"
+        return _STIFFNESS_UNIT
     known = [*study.own_indices, *index_names()]
     if of not in known:
         expected = f"an index ({some(known)}), or {_STIFFNESS} of a strut"
         raise invalid_entry(of, fault="cannot be limited", expected=expected, hint=nearest(of, known))
     return study.unit(of)
+
+
+def limitable(study: Study) -> dict[str, str]:
+    """Unit of each quantity that a limit of the study may be on, by its name in the file.
+
+    These are its own indices and those without required settings, on a road if it has one, and static stiffnesses.
+    """
+    found = {}
+    for name in [*study.own_indices, *(symbol for symbol in INDICES if not needed_settings(symbol))]:
+        if study.road is not None or not study.needs_road(name):
+            with suppress(InerterError):  # the vehicle has no such quantity
+                found[name] = study.unit(name)
+    return {**found, **{f"{_STIFFNESS}.{mount}": _STIFFNESS_UNIT for mount in _mounts(study)}}
+
+
+def _mounts(study: Study) -> list[str]:
+    return list(next(iter(study.layouts.values())).struts)
 
 
 def limited_quantity_words(study: Study, of: str, part: str = "") -> str:

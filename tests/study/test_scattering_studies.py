@@ -11,6 +11,8 @@ from study_text import assert_refused, assert_survives, load_text, study_text
 
 import inerter as it
 from inerter.errors import StudyError
+from inerter.files.common.toml import read_tables
+from inerter.files.study.checking import check_lines
 from inerter.files.study.loading import load_study
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
@@ -172,3 +174,20 @@ BAD: dict[str, tuple[str, str, list[str]]] = {
 @pytest.mark.parametrize(("settings", "place", "words"), BAD.values(), ids=BAD)
 def test_a_bad_tolerance_is_refused_with_its_place(tmp_path: Path, settings: str, place: str, words: list[str]) -> None:
     assert_refused(lambda: study_of(tmp_path, settings), place, words)
+
+
+@pytest.mark.parametrize(
+    ("evaluate", "is_told"),
+    [('["expected-value"]', True), ('["statistical-linearisation", "expected-value"]', False), ('["norm"]', False)],
+)
+def test_a_check_warns_of_tolerances_that_are_simulated(tmp_path: Path, evaluate: str, is_told: bool) -> None:
+    """Of the layout with friction, whose designs are simulated one by one, not of the linear one."""
+    settings = f'indices = ["J1"]\nevaluate = {evaluate}\ntolerance = {{ c = "10 %", k = "5 %" }}'
+    parts = 'k = "20 kN/m"\nc = "1.5 kN s/m"\nf = "20 N"'
+    study = load_text(tmp_path, study_text(settings, elements=parts, layouts='S1 = "k | c"\nS2 = "k | (c | f)"'))
+    lines = list(check_lines(read_tables(study.path, "a study"), study.path))
+    told = [line for line in lines if "tolerances of" in line]
+    assert bool(told) is is_told, lines
+    if is_told:
+        assert told[0].startswith("Warning: the tolerances of S2 are found by expected-value")
+        assert "more than 16384 designs for each index" in told[0]

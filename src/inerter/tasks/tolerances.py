@@ -13,11 +13,13 @@ from inerter.files.common.problem import Problem, at
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
-from inerter.formatting import format_decimals, format_number, format_percent_size, format_share
+from inerter.formatting import format_decimals, format_list, format_number, format_percent_size, format_share
 from inerter.methods.error_bounds import improvement_bound
+from inerter.methods.method import AveragingMethod
 from inerter.methods.registry import with_decisive_method
+from inerter.systems.descriptor import linear_notes
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
-from inerter.uncertainty.tolerance import tolerance_analysis
+from inerter.uncertainty.tolerance import SAMPLES, tolerance_analysis
 from inerter.validation import number_or_none
 
 SHARE = 0.95  # of cases, of the quantile that is told
@@ -123,6 +125,20 @@ class Tolerances(Task[ToleranceAnswer]):
             yield at(("study", "limit_quantile"), fault="there are no constraints", expected=expected)
         if study.tolerance and study.sweeps:
             yield at(("study", "tolerance"), fault="given together with a sweep", expected="one of the two")
+
+    def warnings(self, study: Study) -> Iterator[str]:
+        """Warning on tolerances of designs with friction or gaps that are simulated one by one."""
+        if not study.evaluate or not isinstance(study.method(study.evaluate[0]), AveragingMethod):
+            return
+        names = dict.fromkeys(part.layout for part in self.parts(study))
+        slow = [name for name in names if linear_notes(study.design(name).mechanism())]
+        if slow:
+            count = max((2 + len(study.spread(name))) * SAMPLES for name in slow)
+            yield (
+                f"Warning: the tolerances of {format_list(slow)} are found by {study.evaluate[0]}, the first of "
+                f"evaluate, which simulates more than {count} designs for each index. This may take hours; a quick "
+                'method in front takes seconds: evaluate = ["statistical-linearisation", "expected-value"].'
+            )
 
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Relative tolerance of each value, and the percentile that is minimised, by the headings of the report."""

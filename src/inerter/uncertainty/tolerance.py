@@ -36,6 +36,7 @@ from inerter.work.blas_threads import one_blas_thread
 from inerter.work.running import map_items, running_on
 
 Array = NDArray[np.float64]
+SAMPLES = 4096  # of the two samples of a sensitivity analysis each
 _MOST_CORNERS = 10  # values with tolerances up to which all extremes are combined
 _TRIED, _FEW = 64, 256  # designs tested before the sample, and size of the sample where each takes long
 _TRIED_ALONE = 16  # designs tested where each is a separate mechanism
@@ -106,7 +107,7 @@ def tolerance_analysis(
     method: Method,
     *,
     spread: Mapping[str, float],
-    samples: int = 4096,
+    samples: int = SAMPLES,
     seed: int = 0,
     distribution: str = "uniform",
     executor: Executor | None = None,

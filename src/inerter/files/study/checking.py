@@ -55,6 +55,8 @@ def check_lines(tables: Mapping[str, Any], path: Path) -> Iterator[str]:
     yield f"{path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}{size}."
     yield from roads_sentences(study)
     yield from input_warnings(study)
+    for task in () if searched_layouts(study) else tasks():
+        yield from task.warnings(study)
     yield from (f"Note: {note}." for note in notes)
 
 

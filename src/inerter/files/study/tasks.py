@@ -80,6 +80,10 @@ class Task(ABC, Generic[AnswerT]):
         """Problems of the keys of the task; `given` are the keys that the section [study] has."""
         yield from ()
 
+    def warnings(self, study: Study) -> Iterator[str]:
+        """Warnings of a check before the run: parts that take very long."""
+        yield from ()
+
     @abstractmethod
     def description(self, study: Study) -> Mapping[str, list[str]]:
         """Items of the report's problem statement, by heading."""

@@ -306,3 +306,22 @@ def test_a_workbench_that_waits_for_the_page_says_nothing(tmp_path: Path) -> Non
         finally:
             process.terminate()
             process.communicate(timeout=30)
+
+
+@pytest.mark.parametrize("further", ["", "the Pareto front"])
+def test_a_search_over_networks_has_the_time_left(further: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of networks that come by the group, the larger first, until what follows them has begun."""
+    clock = [0.0]
+    monkeypatch.setattr(paces, "time", SimpleNamespace(monotonic=lambda: clock[0]))
+    pace, groups = Pace.of_networks(further), 40
+    took = np.linspace(3.0, 2.0, groups)
+    pace.begin(0, groups * 24 + bool(further))
+    for done, seconds in enumerate(took):
+        assert (pace.words() != "") == (clock[0] > 10.0)
+        if clock[0] > 10.0:
+            low, high = pace.range() or (math.nan, math.nan)
+            assert low < took[done:].sum() < high
+            assert pace.words().endswith(f" left, then {further}" if further else " left")
+        clock[0] += seconds
+        pace.finish("any", "J1", 24)
+    assert pace.words() == ""

@@ -16,6 +16,7 @@ _KNOWN = 0.2  # share of a design that must be done for the time of all of it to
 _SURE = 0.5, 1.6  # times what is expected, between which the time left lies: the first starts of a design take longest
 _UNSURE = 1.0 / 3.0, 3.0  # the same where designs of a kind are left that is not known
 _EARLY, _EARLY_UNSURE = 10.0, 30.0  # seconds before which no estimate is given, in the two cases
+NETWORKS = ("networks", "")  # kind of all networks of a search, of which many are searched at once
 Kind = tuple[str, str]  # of designs that are alike: layout and index; of parts of a task: "" and its key
 
 
@@ -33,23 +34,31 @@ class Pace:
     indices: Sequence[str] = ("",)
     each: int = 1
     tasks: Mapping[str, str] = field(default_factory=dict)
+    further: str = ""
     left_of: dict[Kind, int] = field(default_factory=dict)  # designs or parts
     took: dict[Kind, list[float]] = field(default_factory=dict)  # seconds, and of how many designs or parts
     parts: dict[str, tuple[ProgressStep, float]] = field(default_factory=dict)  # under way, and since when
     begun: float | None = None
     last: float = 0.0
 
-    def begin(self, kept: int) -> None:
-        """Start the clock, with the first `kept` designs and parts done in an earlier run."""
+    @classmethod
+    def of_networks(cls, further: str = "") -> Pace:
+        """Estimator of the remaining time of a search over networks, after which `further` work follows."""
+        layout, index = NETWORKS
+        return cls({layout: 1}, (index,), 0, further=further)
+
+    def begin(self, kept: int, total: int = 0) -> None:
+        """Start the clock, with the first `kept` of all `total` designs and parts done in an earlier run."""
         self.begun = self.last = time.monotonic()
-        counts = {(layout, index): self.each for layout in self.free for index in self.indices}
+        each = self.each or total - bool(self.further)  # which is one more until it is known
+        counts = {(layout, index): each for layout in self.free for index in self.indices}
         for kind, count in (counts | Counter(("", key) for key in self.tasks.values())).items():
             self.left_of[kind] = count - min(kept, count)
             kept = max(kept - count, 0)
 
     def finish(self, layout: str, index: str, count: int) -> None:
         """Record `count` further designs, or parts of a task, as done; the last of them is of that `Kind`."""
-        now, kind = time.monotonic(), (layout, index)
+        now, kind = time.monotonic(), (layout, index) if self.each else NETWORKS
         if kind in self.left_of:
             took = self.took.setdefault(kind, [0.0, 0.0])
             took[0] += (now - self.last) * max(len(self.parts), 1)
@@ -70,11 +79,12 @@ class Pace:
 
     def words(self) -> str:
         """Remaining time in words; empty if it cannot be estimated."""
-        span = self.range()
+        span = self.range() if any(self.left_of.values()) else None
         if span is None:
             return ""
         low, high = map(duration, span)
-        return f", about {low} left" if low == high else f", {low} to {high} left"
+        then = self.further and f", then {self.further}"
+        return f", about {low} left{then}" if low == high else f", {low} to {high} left{then}"
 
     def range(self) -> tuple[float, float] | None:
         """Least and largest remaining time [s]; None if it cannot be estimated."""

@@ -59,7 +59,7 @@ class _Study:
         """Take note of what is done."""
         if self.begun is None:
             self.begun, self.kept = time.monotonic(), done
-            self.pace.begin(done)
+            self.pace.begin(done, total)
         elif last is not None:
             self.pace.finish(*_kind_of(last), done - self.done)
         self.done, self.total, self.n_failures, self.compiling = done, total, n_failures, ""

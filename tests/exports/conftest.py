@@ -5,7 +5,17 @@ from __future__ import annotations
 import pytest
 from folders import EXAMPLES
 
+from inerter.exports.fmu import platforms
+
 
 @pytest.fixture(scope="session")
 def examples() -> str:
     return str(EXAMPLES)
+
+
+@pytest.fixture
+def unoptimised(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Libraries of FMUs take a third of the time to compile; `test_fmu.py` runs those that users get."""
+    options = tuple("-O0" if option == "-O2" else option for option in platforms._OPTIONS)
+    assert options != platforms._OPTIONS
+    monkeypatch.setattr(platforms, "_OPTIONS", options)

@@ -17,7 +17,7 @@ pytest.importorskip("fmpy", reason='FMPy steps FMUs: pip install "inerter[test]"
 from fmu_master import Master
 from fmu_roads import driven, error, needs_compiler, road
 
-pytestmark = needs_compiler
+pytestmark = [needs_compiler, pytest.mark.usefixtures("unoptimised")]
 K, C, B = it.Spring(30e3), it.Damper(2e3), it.Inerter(100.0)
 KINDS = ("fmu", "fmu3")
 SHOWN = ("front_force", "rear_force", "tyre_front_load", "tyre_rear_load", "sprung_acceleration")

@@ -21,7 +21,7 @@ pytest.importorskip("fmpy", reason='FMPy steps FMUs: pip install "inerter[test]"
 from fmu_master import Master
 from fmu_roads import driven, error, needs_compiler, road
 
-pytestmark = needs_compiler
+pytestmark = [needs_compiler, pytest.mark.usefixtures("unoptimised")]
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 REAL = K | C - it.Gap(5e-4) - (it.Spring(1e6, "ks") | it.Damper(3200.0, "cs")) - (B | it.Friction(20.0))
 LOOSE = K | C | it.Spring(1e5, "k2") - (it.Spring(5e4, "k3") | it.Friction(80.0))

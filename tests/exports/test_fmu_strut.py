@@ -19,7 +19,7 @@ from fmu_master import Master
 from fmu_roads import error, needs_compiler, road
 from strut_master import Host, driven
 
-pytestmark = needs_compiler
+pytestmark = [needs_compiler, pytest.mark.usefixtures("unoptimised")]
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 SHAFT = it.Spring(1e6) | it.Damper(3200.0)
 HEAVY, LIGHT = K | it.Damper(5e3) | it.Inerter(60.0), K | it.Damper(5e3) | it.Inerter(5.0)

@@ -78,6 +78,28 @@ def test_a_peak_where_two_ranges_of_the_search_meet_is_found(ratio):
     assert highest.peak.omega == pytest.approx(at, rel=2e-3)
 
 
+@pytest.mark.parametrize("expected", [[0.7, 7.0], [12.0]])
+def test_a_peak_outside_all_ranges_of_the_search_is_found(expected):
+    at = 9.3
+    squares = Squares(np.ones(1), OK, PeriodicState(1.0, 1, 0.0), np.zeros(1), np.ones(1))
+
+    def resonance(omega):
+        return 1.0 / np.hypot(1.0 - (omega / at) ** 2, 0.2 * omega / at), squares
+
+    with ThreadPoolExecutor(1) as pool:
+        highest, *_ = local_maxima(resonance, np.array(expected), 0.1, pool)
+    assert highest.peak.gain == pytest.approx(1.0 / (0.2 * np.sqrt(1.0 - 0.1**2)), rel=1e-4)
+
+
+@pytest.mark.campaign
+def test_with_much_friction_no_sine_has_a_higher_gain():
+    screw = (Spring(1e6) | Damper(3200.0)) - (Inerter(222.69) | Friction(1321.3))  # harmonic balance is far off
+    car = it.QuarterCar(485.31, 22.930, 223.878e3, Spring(15.4108e3) | Damper(386.96) | screw)
+    found = it.evaluate(car, J5, SIMULATED)
+    assert found.status.ok
+    assert gain(car, 24.41 / (2.0 * np.pi)) <= found.value * (1.0 + found.error_bound)
+
+
 @pytest.mark.campaign
 def test_with_backlash_no_sine_has_a_higher_gain():
     stop = Gap(6.618e-3) - Spring(56.9e3)

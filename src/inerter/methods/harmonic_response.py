@@ -26,6 +26,7 @@ _LONGEST = 1e-3  # [s] of a step
 _MOST_PERIODS, _REPEATS = 300, 1e-5  # until a motion must repeat, and how well
 _GRID = 32  # frequencies between which peaks are looked for where nothing is known of them
 _WITHIN = 1.25  # ratio to a frequency near which a peak is expected
+_MOST_BEYOND = 40  # steps of that ratio beyond the frequencies that were visited
 _NEAR = 1e-3  # relative distance up to which a peak's frequency is found
 _STEPPED = 1e-5  # relative error of a ratio by the time step
 
@@ -110,11 +111,24 @@ def local_maxima(
     best = max(peaks, key=lambda summit: summit.peak.gain)
     points = {omega: found for several in (visited or {}, *searched) for omega, found in several.items()}
     if points and max(ratio for ratio, _ in points.values()) > (1.0 + best.missed) * best.peak.gain:
-        places = sorted(points)
-        i = places.index(_highest(points))
-        points |= _search(forced, places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)])
-        peaks.append(_summit(points))
+        peaks.append(_summit(points | _search(forced, *_enclose(forced, points, lowest))))
     return sorted(peaks, key=lambda summit: -summit.peak.gain)
+
+
+def _enclose(forced: ForcedResponse, points: Visited, lowest: float) -> tuple[float, float]:
+    """Neighbours of the frequency with the highest ratio, in `points`, to which those are added that it takes."""
+    for _ in range(_MOST_BEYOND):
+        places = sorted(points)
+        omega = _highest(points)
+        if omega == places[-1]:
+            beyond = omega * _WITHIN
+        elif omega == places[0] and omega > lowest:
+            beyond = max(omega / _WITHIN, lowest)
+        else:
+            break
+        points[beyond] = forced(beyond)
+    i = places.index(omega)
+    return places[max(i - 1, 0)], places[min(i + 1, len(places) - 1)]
 
 
 def _search(forced: ForcedResponse, lower: float, upper: float) -> Visited:

@@ -161,14 +161,14 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     asked = page.locator(".asked")
     for of, sense, value, told in (
         ("suspension-travel", "at_most", "8 mm", ".limits li"),
-        ("static-stiffness.strut", "at_least", "600 N", ".problems >> text=static-stiffness"),
+        ("static-stiffness.strut", "at_least", "600 kN/m", ".limits .bad"),
     ):
         asked.locator("[name=of]").select_option(of)
         asked.locator("[name=sense]").select_option(sense)
         asked.locator("[name=value]").fill(value)
         asked.get_by_role("button", name="Add").click()
         page.wait_for_selector(told)  # which moves the button: what is pressed meanwhile misses it
-    entry = page.get_by_label("static-stiffness.strut at least", exact=True)
+    entry = page.get_by_label("static stiffness of strut at least", exact=True)
     entry.fill("60 kN/m")
     entry.press("Enter")
     page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")
@@ -186,6 +186,33 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
         page.get_by_role("button", name=f"Delete the limit: {name}").click()
     page.wait_for_selector(".limits", state="detached")
     assert "subject_to" not in tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
+
+
+def test_what_is_no_quantity_of_a_limit_changes_nothing(visitor: Visitor, tmp_path: Path) -> None:
+    """Its sentence is at the field; a number alone has the unit that the field names, and a ratio none."""
+    page = visitor.page
+    before = visitor.values()
+    page.click("#step-2")
+    asked = page.locator(".asked")
+    assert asked.get_by_role("button", name="force of an element", exact=True).count() == 0  # it needs its element
+    for of, text in (("suspension-travel", "5 kg"), ("suspension-travel", "7"), ("dynamic-load-coefficient", "0.3")):
+        asked.locator("[name=of]").select_option(of)
+        asked.locator("[name=value]").fill(text)
+        asked.get_by_role("button", name="Add", exact=True).click()
+        if text == "5 kg":
+            asked.locator(".problem", has_text="5 kg").wait_for()
+            assert visitor.values() == before
+    entry = page.locator("[id='limit suspension-travel at_most']")
+    page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
+    entry.fill("3 N")
+    entry.press("Enter")
+    asked.locator(".problem", has_text="3 N").wait_for()
+    assert visitor.values() == before
+    study = tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
+    assert study["subject_to"] == {
+        "suspension-travel": {"at_most": "7 m"},
+        "dynamic-load-coefficient": {"at_most": 0.3},
+    }
 
 
 @pytest.mark.parametrize("example", ["quarter-car", "limits"])

@@ -2,11 +2,12 @@
 
 import { numbersOf } from "../library.js";
 import { Chip, Field, Select, textHandler, useChoice } from "../parts/controls.js";
-import { html, useState } from "../parts/html.js";
+import { enter, wronglyTyped } from "../entering.js";
+import { html, useRef, useState } from "../parts/html.js";
 import { freshName } from "../network/algebra.js";
 import { answerOf, goalOf } from "../questions.js";
 import { entryAt, indicesIn, own } from "../state/document.js";
-import { capital, printed } from "../state/scale.js";
+import { capital, completed, printed } from "../state/scale.js";
 import { indexName } from "./answers.js";
 import { Entry } from "./values.js";
 
@@ -24,12 +25,14 @@ const PLACE = ["study", "subject_to"];
 export function AskedPanel({ store }) {
   const state = store.get();
   const asked = indicesIn(state.history.present.study);
+  const possible = useLimitable(state).map(({ of }) => of); // what needs a road or settings of its own is none
   /** @param {string} symbol */
   const toggle = (symbol) => store.change({ type: "placed", place: ["study", "indices"], value: asked.includes(symbol)
     ? asked.filter((/** @type {string} */ each) => each !== symbol) : [...asked, symbol] });
   return html`<div class="asked"><b class="legend">Indices of the study</b>
     <div class="row" role="group" aria-label="Indices of the study">
-      ${indexNames(state).map(({ symbol, title }) => html`<${Chip} key=${symbol} title=${title}
+      ${indexNames(state).filter(({ symbol }) => asked.includes(symbol) || possible.includes(symbol)).map((
+        { symbol, title }) => html`<${Chip} key=${symbol} title=${title}
         on=${asked.includes(symbol)} disabled=${asked.length === 1 && asked[0] === symbol}
         set=${() => toggle(symbol)}>${indexName({ symbol, title })}<//>`)}
     </div>
@@ -40,39 +43,48 @@ export function AskedPanel({ store }) {
  * @param {{store: Store}} props */
 export function Constraints({ store }) {
   const state = store.get();
+  const { turn } = state;
   const goal = goalOf(state);
-  /** @type {{of: string, words: string, unit: string}[]} what is minimised stands last */
-  const choices = (answerOf(state, "check").value?.limitable ?? []).toSorted(
-    (/** @type {any} */ one, /** @type {any} */ other) => Number(one.of === goal) - Number(other.of === goal));
+  // What is minimised stands last.
+  const choices = useLimitable(state).toSorted((one, other) => Number(one.of === goal) - Number(other.of === goal));
   const [of = "", setOf] = useChoice(choices.map(({ of }) => of));
   const [sense = "", setSense] = useChoice(SENSES);
   const [value, setValue] = useState("");
   /** @type {{of: string, sense: string, words: string}[]} */
   const told = (answerOf(state, "decision").value?.rows ?? [])
     .flatMap((/** @type {any} */ { limits }) => limits ?? []);
-  /** @param {Limit} limit @param {string | undefined} value */
-  const place = ({ path, sense }, value) => {
-    const { turn, history } = store.get(); // of now: what is typed may be taken over later
-    if (turn === state.turn) store.change({ type: "placed", place: PLACE,
-      value: limited(entryAt(history.present.study, PLACE), [...path, sense], value) });
-  };
-  const add = () => {
-    if (value.trim()) place({ path: of.split("."), sense, value }, value.trim());
-    setValue("");
-  };
   /** @param {string} name */
   const named = (name) => choices.find((each) => each.of === name);
-  const unit = named(of)?.unit;
+  const unit = named(of)?.unit ?? "";
+  /** @param {string} id @param {string} before @param {string[]} place @param {string} text */
+  const take = (id, before, place, text) => {
+    const unit = named(place.slice(PLACE.length, -1).join("."))?.unit ?? "";
+    enter(store, { id, unit, before, turn }, text,
+      { type: "placed", place, value: unit === "" && text !== "" ? numberIn(text) : text });
+  };
+  const add = () => {
+    const before = `1 ${unit}`;
+    if (value.trim()) take(ADDED, before, [...PLACE, ...of.split("."), sense], completed(value.trim(), before));
+    setValue("");
+  };
+  /** @param {string} id */
+  const wrong = (id) => {
+    const sentence = wronglyTyped(state, id);
+    return sentence && html`<p class="problem" role="alert">${sentence}</p>`;
+  };
   return html`<b class="legend">Constraints on every design</b>
-    ${limitsOf(state).map((limit) => {
-      const of = limit.path.join(".");
-      const label = told.find((each) => each.of === of && each.sense === limit.sense)?.words
-        ?? `${named(of)?.words ?? of} ${limit.sense.replace("_", " ")}`;
-      const key = `${of} ${limit.sense}`;
-      return html`<p class="row" key=${key}>${label} <${Entry} id=${`limit ${key}`} label=${label}
-        text=${String(limit.value)} done=${(/** @type {string} */ text) => place(limit, text)} />
+    ${limitsOf(state).map(({ path, sense, value }) => {
+      const of = path.join(".");
+      const label = told.find((each) => each.of === of && each.sense === sense)?.words
+        ?? `${named(of)?.words ?? of} ${sense.replace("_", " ")}`;
+      const id = `limit ${of} ${sense}`;
+      return html`<p class="row" key=${id}>${label} <${Entry} id=${id} label=${label} text=${String(value)}
+          done=${(/** @type {string} */ text) => take(id, String(value), [...PLACE, ...path, sense], text)} />
         <button type="button" aria-label=${`Delete the limit: ${label}`}
-          onClick=${() => place(limit, undefined)}>Delete</button></p>`;
+          onClick=${() => store.change({ type: "placed", place: PLACE,
+            value: limited(entryAt(state.history.present.study, PLACE), [...path, sense], undefined) })}>
+          Delete</button></p>
+        ${wrong(id)}`;
     })}
     <div class="row">
       <${Select} label="Add one on" name="of" value=${of} set=${setOf}
@@ -83,7 +95,21 @@ export function Constraints({ store }) {
         placeholder=${unit ? `in ${printed(unit)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
         onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />
       <button type="button" class="edged" onClick=${add}>Add</button>
-    </div>`;
+    </div>${wrong(ADDED)}`;
+}
+
+const ADDED = "limit to be added"; // the field of one
+
+/** A ratio as the file has it: a number, if it is one. @param {string} text */
+const numberIn = (text) => (Number.isFinite(Number(text)) ? Number(text) : text);
+
+/** What a constraint can be on, by the newest study without a fault. @param {State} state
+ * @returns {{of: string, words: string, unit: string}[]} */
+function useLimitable(state) {
+  const known = useRef([]);
+  const found = answerOf(state, "check").value?.limitable ?? [];
+  if (found.length > 0) known.current = found;
+  return known.current;
 }
 
 /** Settings of an index, as the library declares them: words to choose from, and quantities, which an index that the

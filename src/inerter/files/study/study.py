@@ -208,8 +208,16 @@ class Study(Settings):
             known = ", ".join(self.layouts)
             hint = nearest(layout, self.layouts)
             raise StudyError(str(EntryError(got=f"layout {layout!r}", expected=f"one of {known}", hint=hint)))
-        here = self.at(swept) if swept else self
-        return here.layouts[layout].design(here.vehicle, here.elements, here.free_networks)
+        if swept:
+            return self.at(swept).design(layout)
+        if layout not in self._made_designs:
+            self._made_designs[layout] = self.layouts[layout].design(self.vehicle, self.elements, self.free_networks)
+        return self._made_designs[layout]
+
+    @cached_property
+    def _made_designs(self) -> dict[str, Vehicle]:
+        """Designs that were made already: checks, results and reports ask for each many times."""
+        return {}
 
     @cached_property
     def numbers(self) -> dict[str, Number]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 
-from inerter.files.study.study import Study, elements_used
+from inerter.files.study.study import Study
 from inerter.methods.method import NonlinearitySupport
 from inerter.methods.registry import brief_words_of, nonlinearities_of
 from inerter.networks.elements.roles import GuardRole
-from inerter.systems.graph import switching_parts
 
 _SEEN = {
     NonlinearitySupport.NEITHER: (),
@@ -45,8 +44,7 @@ def limit_basis(study: Study) -> str:
 
 def _losses(study: Study) -> dict[str, GuardRole]:
     """Nonlinear effects of the layouts that linear analysis neglects, with the kind of guard of each: force first."""
-    used = [study.elements[name] for name in elements_used(study) if name in study.elements]
-    parts = [part for element in used for part in switching_parts(element)]
+    parts = [part for own in study.nonlinear_parts.values() for part in own]
     found = {part.effect or part.key: part.switch.guard for part in parts if part.switch is not None}
     return dict(sorted(found.items(), key=lambda one: list(GuardRole).index(one[1])))
 

@@ -20,8 +20,6 @@ from inerter.methods.registry import (
     refuses_gaps,
     simulating_method,
 )
-from inerter.networks.elements import Element
-from inerter.systems.graph import switching_parts
 from inerter.units import quote_value
 
 
@@ -32,8 +30,9 @@ def method_problems(study: Study) -> Iterator[Problem]:
     yield from _road_problems(study)
     yield from _index_problems(study)
     yield from _own_problems(study)
-    yield from _force_problems(study)
-    yield from _gap_problems(study)
+    if study.nonlinear_parts:
+        yield from _force_problems(study)
+        yield from _gap_problems(study)
 
 
 def _road_problems(study: Study) -> Iterator[Problem]:
@@ -54,12 +53,12 @@ def _road_problems(study: Study) -> Iterator[Problem]:
 
 def _index_problems(study: Study) -> Iterator[Problem]:
     """Problems of index settings that no index in `indices` uses."""
-    amplitudes = {field.key for symbol in INDICES if isinstance(field := amplitude_of(symbol), Field)}
     for key in study.settings:
+        is_amplitude = any(isinstance(own := amplitude_of(symbol), Field) and own.key == key for symbol in INDICES)
         field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
         asked = set(owners) & set(map(study.symbol, study.indices))
         what, there = f"the {field.in_words} of {_either(owners, str)}", _either(owners)
-        if key in amplitudes and not (asked and any(map(needs_amplitude, study.methods))):
+        if is_amplitude and not (asked and any(map(needs_amplitude, study.methods))):
             yield at(
                 ("study", key),
                 fault=f"{what} for {_either(methods_that(needs_amplitude))}",
@@ -92,35 +91,31 @@ def _keys(symbol: str) -> set[str]:
 def _force_problems(study: Study) -> Iterator[Problem]:
     """Problems of missing amplitudes."""
     concerned = [method for method in study.methods if needs_amplitude(method)]
-    nonlinear = _layouts_with(study, lambda part: part.switch is not None)
-    for symbol in study.indices if concerned and nonlinear else ():
+    for symbol in study.indices if concerned else ():
         field = amplitude_of(study.symbol(symbol))
         if field is not None and field.key not in study.settings_of(symbol):
+            nonlinear = some(_layouts_with(study, study.nonlinear_parts))
             yield at(
                 ("study", field.key) if isinstance(field, Field) else ("indices", symbol, field.key),
-                fault=f"missing, but {concerned[0]} takes {symbol} of {some(nonlinear)}, where friction or gaps make "
+                fault=f"missing, but {concerned[0]} takes {symbol} of {nonlinear}, where friction or gaps make "
                 f"it depend on the size of the {'force' if isinstance(field, Field) else 'input'}",
                 expected=f"its amplitude, such as {as_line(field)}",
             )
 
 
 def _gap_problems(study: Study) -> Iterator[Problem]:
-    used = (study.elements[name] for name in elements_used(study) if name in study.elements)
-    kinds = dict.fromkeys(part.key for element in used for part in switching_parts(element) if _is_refused(part))
-    layouts = _layouts_with(study, _is_refused)
+    """Problem of a method that supports no element such as a gap, which no damper represents."""
     refusing = next(filter(refuses_gaps, study.methods), None)
-    if refusing is not None and layouts:
+    parts = [(name, part) for name, own in study.nonlinear_parts.items() for part in own]
+    refused = [(name, part.key) for name, part in parts if part.acts and not part.is_damped]
+    if refusing is not None and refused:
+        kinds, layouts = dict.fromkeys(key for _, key in refused), _layouts_with(study, [name for name, _ in refused])
         yield at(
             ("study", "optimise" if study.optimise == refusing else "evaluate"),
             got=quote_value(refusing),
             fault=f"it has no answer for {' or '.join(map(with_article, kinds))}, as in {some(layouts)}",
             expected=f"another method, such as {quote_value(simulating_method())}, or layouts without",
         )
-
-
-def _is_refused(part: Element) -> bool:
-    """Whether statistical linearisation does not support an element that switches."""
-    return part.acts and not part.is_damped
 
 
 def _unseen_numbers(study: Study) -> Iterator[Problem]:
@@ -143,10 +138,10 @@ def unseen_problem(study: Study, place: tuple[str, ...], name: str) -> Iterator[
         )
 
 
-def _layouts_with(study: Study, wanted: Callable[[Element], bool]) -> list[str]:
-    """Layouts with an element of which a simulation includes such a part."""
-    having = {n for n, element in study.elements.items() if any(map(wanted, switching_parts(element)))}
-    concerned = {layout for n, layouts in elements_used(study).items() if n in having for layout in layouts}
+def _layouts_with(study: Study, elements: Iterable[str]) -> list[str]:
+    """Layouts that contain one of these elements, each of which some layout does."""
+    used = elements_used(study)
+    concerned = {layout for name in elements for layout in used[name]}
     return [layout for layout in study.layouts if layout in concerned]
 
 

@@ -33,6 +33,7 @@ from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.free_network import FreeNetwork
 from inerter.networks.parser import names
 from inerter.signals.road import Road
+from inerter.systems.graph import switching_parts
 from inerter.uncertainty.distributions import DISTRIBUTIONS, scatter_of
 from inerter.uncertainty.robust_design import Quantile
 from inerter.vehicle.vehicle import Vehicle
@@ -218,6 +219,13 @@ class Study(Settings):
     def _made_designs(self) -> dict[str, Vehicle]:
         """Designs that were made already: checks, results and reports ask for each many times."""
         return {}
+
+    @cached_property
+    def nonlinear_parts(self) -> dict[str, list[Element]]:
+        """Frictions and gaps in a simulation of each element in layouts, by its name; only of elements with any."""
+        used = [name for name in elements_used(self) if name in self.elements]
+        parts = {name: [one for one in switching_parts(self.elements[name]) if one.switch is not None] for name in used}
+        return {name: own for name, own in parts.items() if own}
 
     @cached_property
     def numbers(self) -> dict[str, Number]:

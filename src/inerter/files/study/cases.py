@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -24,6 +24,7 @@ from inerter.optimisation.active_constraints import broken, constraints_at
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.systems.descriptor import is_held_by_springs, linear_notes
 from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.vehicle import Vehicle
 from inerter.work.progress import report, within
 
 NO_EQUILIBRIUM = "no static equilibrium: no spring supports the body"
@@ -176,95 +177,129 @@ def _prefix(study: Study, method: str) -> str:
     return f"{brief_words_of(method)}: " if len(study.methods) > 1 else ""
 
 
-def _run(study: Study, case: Case, threads: int) -> Outcome:
-    is_at_one_speed, is_swept, study = asks_at_one_speed(study), bool(study.sweeps), study.at(case.swept)
+@dataclass(frozen=True)
+class _Design:
+    """Vehicle of a case with its best values, the search that found them, and the limits that it was subject to."""
+
+    vehicle: Vehicle
+    search: Optimum | None = None  # None where no value is free, or none is to be optimised
+    limits: list[list[Any]] = field(default_factory=list)
+    statuses: tuple[Status, ...] = ()  # of the search, or of the limits where there is none
+
+
+def _run(whole: Study, case: Case, threads: int) -> Outcome:
+    study = whole.at(case.swept)
+    best = _best_design(study, case, threads)
+    estimates = _estimates(study, case, best, threads)
+    own = {method: by_index[case.index] for method, by_index in estimates.items()}
+    has_controls = study.baseline is not None and not whole.sweeps
+    asks_speeds = asks_at_one_speed(whole) and np.isfinite(own[study.evaluate[0]].value)
+    notes = _notes(study, best.vehicle, own)
+    speeds, speed_message = at_other_speeds(study, best.vehicle, case.layout, case.index) if asks_speeds else ({}, "")
+    return Outcome(
+        case.layout,
+        case.index,
+        case.point,
+        **_search_fields(best.search),
+        **_status_fields(own, best.statuses),
+        values=_of_each(estimates, "value"),
+        standard_errors=_of_each(estimates, "standard_error"),
+        error_bounds=_of_each(estimates, "error_bound"),
+        notes=notes,
+        realisations={m: e.realisations for m, e in own.items() if e.realisations},
+        samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
+        controls={m: _controls(study, case, best, m, e, threads) for m, e in own.items()} if has_controls else {},
+        limits=best.limits,
+        speeds=speeds,
+        speed_message=speed_message,
+        in_conditions={m: list(map(_in_condition, e.in_conditions)) for m, e in own.items() if e.in_conditions},
+    )
+
+
+def _best_design(study: Study, case: Case, threads: int) -> _Design:
+    """The design of a case with the lowest index within the limits; as it stands where nothing is to be optimised."""
     design = study.design(case.layout)
     vehicle = design if study.conditions else design.mechanism()  # whose numbers conditions change
-    fields: dict[str, Any] = {
-        "parameters": {},
-        "active_bounds": {},
-        "ranges": {},
-        "starts": 0,
-        "agreed": 0,
-        "evaluations": 0,
-    }
-    found: Optimum | None = None
-    limits = all_limits(study, case.layout)
-    searched: tuple[Status, ...] = ()  # of the search, or of the limits where there is none
-    if study.optimise is not None and vehicle.free_values():
-        method = study.method(study.optimise, threads)
-        free = vehicle
-        asked = study.resolve_index(case.index, case.layout)
+    if study.optimise is None:
+        return _Design(vehicle)
+    method, limits = study.method(study.optimise, threads), all_limits(study, case.layout)
+    if vehicle.free_values():
+        index = study.resolve_index(case.index, case.layout)
         with within("search", 0.0, _SEARCHED):
-            found = optimise(free, asked, method, subject_to=limits, seed=study.seed)
-        vehicle = found.design
-        fields = {
-            "parameters": found.parameters,
-            "active_bounds": found.active_bounds,
-            "ranges": found.ranges,
-            "starts": found.n_starts,
-            "agreed": found.n_converged,
-            "evaluations": found.evaluations,
-        }
-        fields["limits"] = [list(one) for one in limit_results(study, case.layout, free, found.limits)]
-        searched = (found.status,)
-    elif study.optimise is not None and limits:
-        held = constraints_at(vehicle, limits, study.method(study.optimise, threads))
-        fields["limits"] = [list(one) for one in limit_results(study, case.layout, vehicle, held)]
-        searched = (broken(held), *(one.estimate.status for one in held))
+            found = optimise(vehicle, index, method, subject_to=limits, seed=study.seed)
+        results = list(map(list, limit_results(study, case.layout, vehicle, found.limits)))
+        return _Design(found.design, found, results, (found.status,))
+    if not limits:
+        return _Design(vehicle)
+    held = constraints_at(vehicle, limits, method)
+    results = list(map(list, limit_results(study, case.layout, vehicle, held)))
+    return _Design(vehicle, None, results, (broken(held), *(one.estimate.status for one in held)))
+
+
+def _estimates(study: Study, case: Case, best: _Design, threads: int) -> dict[str, dict[str, Estimate]]:
+    """Value of each index of the study for a design, by each method that evaluates it.
+
+    Where there are several methods, one that fails leaves the others their values.
+    """
 
     def estimate(method: str, index: str) -> Estimate:
-        report(f"values by {method}", share=_SEARCHED if found is not None else None)
-        if found is not None and (method, index) == (study.optimise, case.index):
-            return found.estimate
+        report(f"values by {method}", share=None if best.search is None else _SEARCHED)
+        if best.search is not None and (method, index) == (study.optimise, case.index):
+            return best.search.estimate
         try:
-            return evaluate(vehicle, study.resolve_index(index, case.layout), study.method(method, threads))
+            return evaluate(best.vehicle, study.resolve_index(index, case.layout), study.method(method, threads))
         except FAILURES as error:
             if len(study.evaluate) == 1:
                 raise
             return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
 
-    def controls(method: str, estimate: Estimate) -> list[float]:
-        """Control variates of an estimate of the case's own index; empty if there are none."""
-        simulated, count = study.method(method, threads), estimate.realisations
-        if isinstance(simulated, AveragingMethod) and 0 < count <= _MOST_SAMPLES:
-            simulated = simulated.with_realisations(count, estimate.period)
-            known = controls_of(vehicle, study.resolve_index(case.index, case.layout), simulated, count)
-            return [] if known is None else np.concatenate(known).tolist()
-        return []
+    return {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
 
-    over = found.gain_over_linear if found else None
-    estimates = {method: {index: estimate(method, index) for index in study.indices} for method in study.evaluate}
-    own = {method: by_index[case.index] for method, by_index in estimates.items()}
+
+def _search_fields(found: Optimum | None) -> dict[str, Any]:
+    """Fields of an outcome that tell of its search."""
+    if found is None:
+        return {"parameters": {}, "active_bounds": {}, "ranges": {}, "starts": 0, "agreed": 0, "evaluations": 0}
+    over = found.gain_over_linear
+    return {
+        "parameters": found.parameters,
+        "active_bounds": found.active_bounds,
+        "ranges": found.ranges,
+        "starts": found.n_starts,
+        "agreed": found.n_converged,
+        "evaluations": found.evaluations,
+        "over_linear": None if over is None else (-over.percent, over.percent_error),
+    }
+
+
+def _status_fields(own: Mapping[str, Estimate], searched: Sequence[Status]) -> dict[str, Any]:
+    """Status by method, and the message of the worst one, with its method where there are several."""
     worst = worst_of((*(e.status for e in own.values()), *searched))
-    bad = next((f"{brief_words_of(method)}: " for method, e in own.items() if e.status == worst and len(own) > 1), "")
-    left_out = design_notes(study, vehicle.mechanism())
-    notes = [with_prefix(_prefix(study, m), note) for m, e in own.items() for note in e.notes]
-    notes += [parts_of(note) for note in left_out]
-    speeds: dict[str, list[float]] = {}
-    speed_message = ""
-    is_known = bool(np.isfinite(own[study.evaluate[0]].value))
-    if is_at_one_speed and is_known:
-        speeds, speed_message = at_other_speeds(study, vehicle, case.layout, case.index)
-    return Outcome(
-        case.layout,
-        case.index,
-        case.point,
-        **fields,
-        values={m: {i: e.value for i, e in by_index.items()} for m, by_index in estimates.items()},
-        standard_errors={m: {i: e.standard_error for i, e in by_index.items()} for m, by_index in estimates.items()},
-        status={m: (worst if e.status.ok else worst_of((e.status, *searched))).kind.value for m, e in own.items()},
-        message=f"{'' if worst.ok else bad}{worst.message}" if worst.message else "",
-        notes=list(map(list, dict.fromkeys(notes))),
-        realisations={m: e.realisations for m, e in own.items() if e.realisations},
-        samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
-        controls={} if is_swept or study.baseline is None else {m: controls(m, e) for m, e in own.items()},
-        over_linear=None if over is None else (-over.percent, over.percent_error),
-        error_bounds={m: {i: e.error_bound for i, e in by_index.items()} for m, by_index in estimates.items()},
-        speeds=speeds,
-        speed_message=speed_message,
-        in_conditions={m: list(map(_in_condition, e.in_conditions)) for m, e in own.items() if e.in_conditions},
-    )
+    by = "" if worst.ok or len(own) == 1 else next((m for m, e in own.items() if e.status == worst), "")
+    kinds = {m: (worst if e.status.ok else worst_of((e.status, *searched))).kind.value for m, e in own.items()}
+    message = f"{brief_words_of(by)}: {worst.message}" if by and worst.message else worst.message
+    return {"status": kinds, "message": message}
+
+
+def _notes(study: Study, vehicle: Vehicle, own: Mapping[str, Estimate]) -> list[list[str | float]]:
+    """Notes of the estimates, then those on the design, each once and as its parts."""
+    notes = [with_prefix(_prefix(study, method), note) for method, e in own.items() for note in e.notes]
+    notes += map(parts_of, design_notes(study, vehicle.mechanism()))
+    return list(map(list, dict.fromkeys(notes)))
+
+
+def _controls(study: Study, case: Case, best: _Design, method: str, estimate: Estimate, threads: int) -> list[float]:
+    """Control variates of an estimate of the case's own index; empty if there are none."""
+    simulated, count = study.method(method, threads), estimate.realisations
+    if not isinstance(simulated, AveragingMethod) or not 0 < count <= _MOST_SAMPLES:
+        return []
+    simulated = simulated.with_realisations(count, estimate.period)
+    known = controls_of(best.vehicle, study.resolve_index(case.index, case.layout), simulated, count)
+    return [] if known is None else np.concatenate(known).tolist()
+
+
+def _of_each(estimates: Mapping[str, Mapping[str, Estimate]], name: str) -> dict[str, dict[str, Any]]:
+    return {method: {index: getattr(e, name) for index, e in own.items()} for method, own in estimates.items()}
 
 
 def _in_condition(estimate: Estimate) -> dict[str, Any]:

@@ -234,7 +234,6 @@ def by_case(data: xr.Dataset, name: str) -> NDArray[Any]:
 def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
     """The dataset without numbers: dimensions, labels, units, and what each variable is."""
     swept = {sweep.label: len(sweep.values) for sweep in study.sweeps} or {"point": 1}
-    design = ("layout", "index", *swept)
     sizes = {
         "layout": len(study.layouts),
         "index": len(study.indices),
@@ -247,14 +246,32 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         CONDITION: len(study.conditions),
     }
     variables = {}
-    uncertain, limited = UNCERTAIN if is_uncertain(study) else {}, LIMITED if study.limits else {}
-    beside = SPEEDS if asks_at_one_speed(study) else {}
-    varied = _conditions_of({**_VARIABLES, **uncertain}) if study.conditions else {}
-    for name, (more, empty, long_name) in {**_VARIABLES, **uncertain, **limited, **beside, **varied}.items():
-        dims = (*design, *more)
+    for name, (more, empty, long_name) in _variables_of(study).items():
+        dims = ("layout", "index", *swept, *more)
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
-    coords: dict[str, Any] = {
+    data = xr.Dataset(variables, _labels_of(study, parameters))
+    if study.limits:
+        data["limit_value"].attrs["basis"] = limit_basis(study)
+    for name in PERCENT & set(variables):
+        data[name].attrs["units"] = "percent"
+    return data
+
+
+def _variables_of(study: Study) -> dict[str, _Variable]:
+    """Variables of the results: those of every study, then those of what it declares."""
+    values = {**_VARIABLES, **(UNCERTAIN if is_uncertain(study) else {})}
+    return {
+        **values,
+        **(LIMITED if study.limits else {}),
+        **(SPEEDS if asks_at_one_speed(study) else {}),
+        **(_conditions_of(values) if study.conditions else {}),
+    }
+
+
+def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
+    """Labels of the dimensions: of every study, then of what it declares; `parameters` has their units by name."""
+    labels: dict[str, Any] = {
         "layout": list(study.layouts),
         "elements": ("layout", [len(study.design(layout).mechanism().strut_elements()) for layout in study.layouts]),
         "index": list(study.indices),
@@ -267,30 +284,22 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "index_title": ("index", [study.objective_title(name) for name in study.indices]),
     }
     if study.limits:
-        told = [(one, "(swept)" if is_swept(study, one) else one.value_text) for one in study.limits]
-        coords["limit"] = [f"{one.words} {text}" for one, text in told]
-        coords["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
-        coords["limit.words"] = ("limit", [limit_text(study, *one) for one in told])
-        coords["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
-    if beside and study.road is not None:
-        coords["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
+        stated = [(one, "(swept)" if is_swept(study, one) else one.value_text) for one in study.limits]
+        labels["limit"] = [f"{one.words} {text}" for one, text in stated]
+        labels["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
+        labels["limit.words"] = ("limit", [limit_text(study, *one) for one in stated])
+        labels["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
+    if study.road is not None and asks_at_one_speed(study):
+        labels["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     if study.conditions:
         shares = np.array([condition.share for condition in study.conditions])
-        coords[CONDITION] = (CONDITION, condition_labels(study.conditions), {"over": study.over})
-        coords[f"{IN_CONDITIONS}share"] = (CONDITION, shares / shares.sum())
+        labels[CONDITION] = (CONDITION, condition_labels(study.conditions), {"over": study.over})
+        labels[f"{IN_CONDITIONS}share"] = (CONDITION, shares / shares.sum())
     for sweep in study.sweeps:
-        attributes = {
-            "units": sweep.unit,
-            "long_name": sweep.words,
-            **({"written": sweep.written} if sweep.written else {}),
-        }
-        coords[sweep.label] = (sweep.label, list(sweep.values), attributes)
-    data = xr.Dataset(variables, coords)
-    if study.limits:
-        data["limit_value"].attrs["basis"] = limit_basis(study)
-    for name in PERCENT & set(variables):
-        data[name].attrs["units"] = "percent"
-    return data
+        written = {"written": sweep.written} if sweep.written else {}
+        attributes = {"units": sweep.unit, "long_name": sweep.words, **written}
+        labels[sweep.label] = (sweep.label, list(sweep.values), attributes)
+    return labels
 
 
 def is_uncertain(study: Study) -> bool:

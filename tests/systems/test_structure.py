@@ -12,6 +12,7 @@ from random_mechanisms import FAMILIES, mechanisms, opened
 from wang_su import J1, paper_quarter_car
 
 import inerter as it
+from inerter.methods.linear import CONVENTIONS, linear_problem, linear_problem_of_design
 from inerter.networks.transform import map_elements
 from inerter.systems.descriptor import _describe, close, describe
 from inerter.systems.graph import linear_graph
@@ -45,8 +46,37 @@ def test_descriptors_equal_those_made_directly(family):
         free, values = opened(mechanism)
         assert_equal_descriptors(describe(free), directly(free))
         one, other = close(describe(free), values).fine, close(directly(free), values).fine
-        for ours, theirs, *errors in zip(one.matrices, other.matrices, one.errors, other.errors, strict=True):
-            assert np.all(np.abs(ours - theirs) <= np.maximum(*errors))
+        assert np.all(np.abs(one.values - other.values) <= np.maximum(one.errors, other.errors))
+
+
+ROAD = it.Road(roughness=5e-7, speed=25.0)
+LOW_PASS = it.FilteredExcitation(ROAD, it.Filter((1.0,), (0.05, 1.0)))
+TWO_TRACKS = it.Road(roughness=5e-7, speed=25.0, coherence=it.Coherence.isotropic(track=1.5))
+
+
+@pytest.mark.parametrize(
+    "index",
+    [J1, it.RideComfort(ROAD, "Wk"), it.TyreLoad(LOW_PASS), it.TyreLoad(TWO_TRACKS), it.LoadCarrying()],
+    ids=["white", "weighted", "filtered", "two tracks", "peak"],
+)
+def test_designs_share_one_problem_and_have_the_values_of_their_own(index):
+    rng = np.random.default_rng(15)
+    struts = [
+        it.Spring(k) | it.Damper(c) - it.Inerter(b) for k, c, b in rng.uniform(0.5, 2.0, (4, 3)) * (1e5, 5e3, 100)
+    ]
+    body = (730.0, 1200.0, 400.0, 25.0, 20.0, 120e3, 100e3, 0.9, 1.2, 1.4, 1.5)
+    found = []
+    for front, rear in (struts[:2], struts[2:]):
+        car = it.FullCar(*body, front=front, rear=rear).mechanism()
+        definition = index.definition(car)
+        problem, values = linear_problem_of_design(car, definition, CONVENTIONS["exact"])
+        found.append(problem.descriptor)
+        ours = problem.estimate(values)
+        theirs = linear_problem(car, definition, CONVENTIONS["exact"]).estimate({})
+        assert ours.value == pytest.approx(theirs.value, rel=1e-13)
+        assert (ours.status, ours.notes, ours.unit) == (theirs.status, theirs.notes, theirs.unit)
+        assert ours.error_bound == pytest.approx(theirs.error_bound, rel=1e-3)
+    assert found[0] is found[1]
 
 
 def with_other_values(mechanism, rng):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -21,7 +21,7 @@ from inerter.norms.excess import excess_squares
 from inerter.norms.h2 import H2, h2
 from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.signals.coherence import Excess
-from inerter.systems.descriptor import Descriptor, close, describe
+from inerter.systems.descriptor import Descriptor, close, describe, describe_design
 from inerter.systems.filters import Filter, high_pass
 from inerter.systems.input_paths import Column, InputPath, apply_excitation, columns_of, excesses_of, inputs_of
 from inerter.systems.linear import LinearSystem
@@ -84,6 +84,7 @@ class LinearProblem:
     arrivals: tuple[Column, ...]  # the inputs of the descriptor, with their sources and delays in rising order
     pade_order: int | None
     paths: tuple[InputPath, ...]  # from the sources to the inputs of the mechanism
+    mechanism: Mechanism  # as excited
     excesses: Mapping[str, Excess] = field(default_factory=dict)  # of sources whose filters only stand in for a density
 
     @cached_property
@@ -111,7 +112,7 @@ class LinearProblem:
     @cached_property
     def highest_filter(self) -> int:
         """The order of the highest filter before an input or behind an output."""
-        before = [c.filter for c in self.definition.input_paths(self.unfiltered.mechanism)]
+        before = [c.filter for c in self.definition.input_paths(self.mechanism)]
         return max((one.order for one in (*self.definition.filters, *before) if one is not None), default=0)
 
     def part(self, which: NDArray[np.bool_] | slice) -> LinearProblem:
@@ -131,12 +132,13 @@ class LinearProblem:
         Free values of mounts that lie still there are none of it.
         """
         names = [output.output for output in self.definition.outputs]
-        mechanism = self.unfiltered.mechanism
+        mechanism = self.mechanism
         half = on_one_side(mechanism, [a for a in self.definition.input_paths(mechanism) if a.source == source])
         if half is not None:
             described = describe(half[0], inputs_of(half[1]), names)
             driven = apply_excitation(described, half[1])
-            return replace(self, unfiltered=driven, arrivals=tuple(columns_of(half[1])), paths=half[1])
+            columns = tuple(columns_of(half[1]))
+            return replace(self, unfiltered=driven, arrivals=columns, paths=half[1], mechanism=half[0])
         d, chosen = self.unfiltered, [i for i, of in enumerate(self.sources) if of == source]
         S, R, F, Y_eta, Y_x, Y_u = d.sizes
         descriptor = replace(
@@ -223,7 +225,7 @@ class LinearProblem:
         self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = (), integral: float = 0.0
     ) -> Estimate:
         """Estimate with the errors from rounding and from approximated excitations."""
-        stand_ins = error_sources_of(self.definition.drive, self.unfiltered.mechanism)
+        stand_ins = error_sources_of(self.definition.drive, self.mechanism)
         own: tuple[ErrorSource, ...] = (ErrorSource(ROUNDING, rounding + _FEW),)
         if self.excesses:
             own = (*own, ErrorSource(DENSITY, integral))
@@ -233,20 +235,40 @@ class LinearProblem:
 
 
 def linear_problem(mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions) -> LinearProblem:
-    """Linear problem for `question`, with its sources and the filters of the conventions.
+    """Linear problem of an index, with its sources and the filters of the conventions.
 
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
+    return _linear_problem(mechanism, definition, conventions, lambda *asked: (describe(*asked), {}))[0]
+
+
+def linear_problem_of_design(
+    mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions
+) -> tuple[LinearProblem, Mapping[str, float]]:
+    """Linear problem of all designs of the structure of a design without free values, and its values there.
+
+    Where it depends on more than the structure it is that of the design alone, without values.
+
+    Raises `PerformanceIndexError` as `linear_problem`.
+    """
+    return _linear_problem(mechanism, definition, conventions, describe_design)
+
+
+def _linear_problem(
+    mechanism: Mechanism,
+    definition: IndexDefinition,
+    conventions: Conventions,
+    describe_mechanism: Callable[..., tuple[Descriptor, Mapping[str, float]]],
+) -> tuple[LinearProblem, Mapping[str, float]]:
     check_peak_gain(definition)
-    asked, driven = (
-        with_convention_filters(conventions, mechanism, definition),
-        definition.drive.excited_mechanism(mechanism),
-    )
+    asked = with_convention_filters(conventions, mechanism, definition)
+    driven = definition.drive.excited_mechanism(mechanism)
     paths = definition.input_paths(driven)
-    descriptor = describe(driven, inputs_of(paths), [output.output for output in definition.outputs])
-    columns = tuple(columns_of(paths))
-    excited = apply_excitation(descriptor, paths)
-    return LinearProblem(asked, excited, columns, conventions.pade_order, tuple(paths), excesses_of(paths))
+    excesses = excesses_of(paths)
+    outputs = [output.output for output in definition.outputs]
+    descriptor, values = describe_mechanism(driven, inputs_of(paths), outputs)
+    columns, excited = tuple(columns_of(paths)), apply_excitation(descriptor, paths)
+    return LinearProblem(asked, excited, columns, conventions.pade_order, paths, driven, excesses), values
 
 
 def check_peak_gain(definition: IndexDefinition) -> None:

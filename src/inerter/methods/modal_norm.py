@@ -100,7 +100,7 @@ def _without_states(problem: LinearProblem, shape: Filter | None) -> tuple[Descr
     """
     descriptor, columns = problem.unfiltered, problem.arrivals
     if shape is not None and shape.order > 0:
-        plain = [replace(path, filter=None) for path in problem.paths]
+        plain = tuple(replace(path, filter=None) for path in problem.paths)
         outputs = [weighted.output for weighted in problem.definition.outputs]
         described = describe(descriptor.mechanism, inputs_of(plain), outputs)
         descriptor, columns = apply_excitation(described, plain), tuple(columns_of(plain))

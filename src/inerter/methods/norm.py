@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import DesignError
 from inerter.indices.definition import Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of
-from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem
+from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem, linear_problem_of_design
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
 from inerter.methods.network_norm import network_kernel, norms_over_strut
 from inerter.methods.objective import Differentiable, count_of, rows_of
@@ -53,8 +53,9 @@ class Norm(FormerMethodNames):
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
         mechanism = vehicle.mechanism()
-        problem = linear_problem(mechanism, index.definition(mechanism), CONVENTIONS[self.conventions])
-        return problem.estimate({})
+        definition, conventions = index.definition(mechanism), CONVENTIONS[self.conventions]
+        problem, values = linear_problem_of_design(mechanism, definition, conventions)
+        return problem.estimate(values)
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values, compiled."""

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import scipy
@@ -77,7 +78,7 @@ def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     fine = system.fine
     if fine is None:
         return _of_matrices(system, pade_order)
-    if not (system.D.any() or fine.errors[3].any()):
+    if not (system.D.any() or fine.errors[system.order :, system.order :].any()):
         found = _squares(system, fine, pade_order)
         if found is not None:
             return H2(np.sqrt(found[0]), OK, 0.5 * found[1])
@@ -94,8 +95,8 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     A, B, C = (system.A, system.B, system.C) if drifts else (part.A, part.B, part.C)
     seen = seen & (not drifts)
     given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
-    matrices = A, B, C, system.D
-    found = _squares(given, ExtendedMatrices(matrices, (0.0 * A, 0.0 * B, 0.0 * C, 0.0 * system.D)), pade_order)
+    values = np.block([[A, B], [C, system.D]]).astype(np.longdouble)
+    found = _squares(given, ExtendedMatrices(values, np.zeros(values.shape), len(A)), pade_order)
     if np.any(seen):
         status = parts.status
     elif np.any(direct):
@@ -152,78 +153,95 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
     so does a small part of the correction, for its second order.
     """
     A, scale = balance(system.A)
-    row = scale[:, None]
-    fine_A, fine_B, fine_C = fine.matrices[0] / row * scale, fine.matrices[1] / row, fine.matrices[2] * scale
-    EA, EB, EC = fine.errors[0] / row * scale, fine.errors[1] / row, fine.errors[2] * scale
+    n = len(A)
+    into, out = (np.concatenate((scale, np.ones(size - n))) for size in fine.values.shape)
+    units = out / into[:, None]  # powers of two
+    values, errors = fine.values * units, fine.errors * units
+    fine_A, fine_B, fine_C = values[:n, :n], values[:n, n:], values[n:, :n]
+    EA, EB, EC = errors[:n, :n], errors[:n, n:], errors[n:, :n]
     drifting = _drifting(EA + np.abs(A))
-    covariance = drift_covariance(fine_B[drifting], system.delays, system.sources)
-    if covariance is None:
-        return None
-    moved = EA + np.abs(fine_A - A).astype(float)
-    W, EW = _excitation(system, (A, moved), (fine_B, EB), pade_order)
+    drift = None
+    if drifting.any():
+        covariance = drift_covariance(fine_B[drifting], system.delays, system.sources)
+        if covariance is None:
+            return None
+        drift = _Drift(drifting, covariance.astype(float))
+    W, EW = _excitation(system, A, (fine_A, fine_B), (EA, EB), pade_order)
     try:
-        solver = _Lyapunov(A[np.ix_(~drifting, ~drifting)] if drifting.any() else A)
-        P, residual, solved = _covariance(solver, A, (fine_A, W), (drifting, covariance.astype(float)))
+        solver = _Lyapunov(A if drift is None else A[drift.blocks[0]])
+        P, residual, solved = _covariance(solver, A, (fine_A, W), drift)
         size, C = np.abs(P), fine_C.astype(float)
-        seen = np.abs(C) @ size
-        squares = np.einsum("ij,jk,ik->i", fine_C, P, fine_C)
-        goals = np.where((seen * np.abs(C)).sum(axis=1) > 0.0, squares, np.inf).astype(float)
+        weights = np.abs(C)
+        seen = weights.dot(size)
+        squares = (fine_C.dot(P) * fine_C).sum(axis=1)
+        goals = np.where((seen * weights).sum(axis=1) > 0.0, squares, np.inf).astype(float)
         if not (goals > 0.0).all():
             return None
-        Q = [_adjoint(solver, A, row, drifting) / goal for row, goal in zip(C, goals, strict=True)]
+        Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
         return None
     change = np.array([np.vdot(one, residual) for one in Q])
     together = sum(map(np.abs, Q))
-    unsure = np.vdot(together, EW + 2.0 * (EA + len(A) * _LONG * np.abs(A)) @ size)
-    unsure += np.vdot(seen / goals[:, None], 2.0 * EC + len(A) * _LONG * np.abs(C))
+    unsure = 2.0 * np.vdot(together, EW + (EA + n * _LONG * np.abs(A)).dot(size))
+    unsure += np.vdot(seen / goals[:, None], 2.0 * EC + n * _LONG * weights)
     terms = float(np.vdot(together, np.abs(residual)))
     if not (unsure <= ACCURATE and terms <= _SMALL and solved):
         return None
-    error = float(unsure) + _SECOND_ORDER * terms + len(A) * _EPS
+    error = float(unsure) + _SECOND_ORDER * terms + n * _EPS
     return np.asarray(squares * (1.0 + change), dtype=float), error
 
 
+@dataclass(frozen=True, eq=False)
+class _Drift:
+    """States that only the inputs move, and their covariance."""
+
+    states: NDArray[np.bool_]
+    covariance: Matrix
+
+    @property
+    def blocks(self) -> tuple[Any, Any, Any, Any]:
+        """Indices of the blocks of a matrix: others with others, others with these, the converse, these with these."""
+        d, w = np.flatnonzero(~self.states), np.flatnonzero(self.states)
+        return np.ix_(d, d), np.ix_(d, w), np.ix_(w, d), np.ix_(w, w)
+
+
 def _covariance(
-    solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix], known: tuple[NDArray[np.bool_], Matrix]
+    solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix], drift: _Drift | None
 ) -> tuple[Matrix, Matrix, bool]:
     """P, the residual of its equation, and whether that is small against the noise that enters each state.
 
     Of states that only drift the covariance is known, and the others follow them.
     """
-    (fine_A, W), (drifting, covariance) = fine, known
+    fine_A, W = fine
     noise = W.astype(float)
-    if drifting.any():
-        P = np.zeros_like(A)
-        decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
-        d, dw = np.ix_(decays, decays), np.ix_(decays, w)
-        follow = A[dw]
-        P[np.ix_(w, w)] = covariance
-        P[dw] = np.linalg.solve(A[d], -(follow @ covariance + noise[dw]))
-        P[np.ix_(w, decays)] = P[dw].T
-        P[d] = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+    if drift is None:
+        P, residual = solver.refine(fine_A, W)
     else:
-        P = solver.refine(fine_A, W)
-    residual = np.asarray(_add_transpose(fine_A @ P) + W, dtype=float)
-    if drifting.any():
-        residual[np.ix_(w, w)] = 8.0 * _EPS * covariance
+        P, covariance = np.zeros_like(A), drift.covariance
+        d, dw, wd, w = drift.blocks
+        follow = A[dw]
+        P[w] = covariance
+        P[dw] = np.linalg.solve(A[d], -(follow @ covariance + noise[dw]))
+        P[wd] = P[dw].T
+        P[d], _ = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+        residual = _residual(fine_A, P, W)
+        residual[w] = 8.0 * _EPS * covariance
     enters = noise.diagonal()
     terms = 2.0 * (np.abs(A) * np.abs(P)).sum(axis=1) + enters
     return P, residual, not ((enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)).any()
 
 
-def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drifting: NDArray[np.bool_]) -> Matrix:
+def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: _Drift | None) -> Matrix:
     """Q of `_squares` for one output."""
     goal = np.outer(row, row)
-    if not drifting.any():
+    if drift is None:
         return solver.solve(goal, adjoint=True)
     Q = np.zeros_like(A)
-    decays, w = np.flatnonzero(~drifting), np.flatnonzero(drifting)
-    d, dw = np.ix_(decays, decays), np.ix_(decays, w)
+    d, dw, wd, w = drift.blocks
     Q[d] = solver.solve(goal[d], adjoint=True)
     Q[dw] = np.linalg.solve(A[d].T, -(goal[dw] + Q[d] @ A[dw]))
-    Q[np.ix_(w, decays)] = Q[dw].T
-    Q[np.ix_(w, w)] = goal[np.ix_(w, w)] + _add_transpose(Q[dw].T @ A[dw])
+    Q[wd] = Q[dw].T
+    Q[w] = goal[w] + _add_transpose(Q[dw].T @ A[dw])
     return Q
 
 
@@ -263,14 +281,15 @@ class _Lyapunov:
         P = self.Z.dot(Y / scale).dot(self.Z.T)
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
-    def refine(self, A: Matrix, W: Matrix) -> Matrix:
-        """P for an A and a W in extended precision, corrected for its residuals while that changes a variance.
+    def refine(self, A: Matrix, W: Matrix) -> tuple[Matrix, Matrix]:
+        """P for an A and a W in extended precision, corrected while that changes a variance, and what remains of W.
 
         Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
         """
         P, before = self.solve(W.astype(float)), np.inf
+        residual = _residual(A, P, W)
         for turn in range(20):
-            step = self.solve(np.asarray(_add_transpose(A @ P) + W, dtype=float))
+            step = self.solve(residual)
             change = math.sqrt(np.vdot(step, step))
             steps, variances = np.abs(step.diagonal()), P.diagonal()
             if turn == 0 and (steps > _DAMPED * variances).any():
@@ -278,29 +297,37 @@ class _Lyapunov:
             if not change < 0.5 * before:
                 break
             P, before = P + step, change
+            residual = _residual(A, P, W)
             if (steps <= _STEADY * variances).all():
                 break
-        return P
+        return P, residual
+
+
+def _residual(A: Matrix, P: Matrix, W: Matrix) -> Matrix:
+    """A P + P A' + W, for a symmetric P."""
+    return np.asarray(_add_transpose(A.dot(P)) + W, dtype=float)
 
 
 def _excitation(
-    system: LinearSystem, dynamics: tuple[Matrix, Matrix], entries: tuple[Matrix, Matrix], pade_order: int | None
+    system: LinearSystem, A: Matrix, fine: tuple[Matrix, Matrix], errors: tuple[Matrix, Matrix], pade_order: int | None
 ) -> tuple[Matrix, Matrix]:
-    """W of `_squares`: the input covariance with that of delayed inputs, and its error."""
-    (A, EA), (B, EB) = dynamics, entries
+    """W of `_squares`: the input covariance with that of delayed inputs, and half its error, before its transpose."""
+    (fine_A, B), (EA, EB) = fine, errors
     size = np.abs(B).astype(float)
-    W, EW = B @ B.T, _add_transpose(EB @ size.T) + 2.0 * _LONG * size @ size.T
+    W, EW = B.dot(B.T), (EB + _LONG * size).dot(size.T)
+    if len(set(system.sources)) == len(system.sources):
+        return W, EW
+    moved = EA + np.abs(fine_A - A).astype(float)
     for source in dict.fromkeys(system.sources):
         arrivals = [j for j in np.argsort(system.delays, kind="stable") if system.sources[j] == source]
         delayed = unsure = np.zeros((B.shape[0], 0))
         for before, now in pairwise(arrivals):
             delayed, unsure = np.hstack([delayed, B[:, [before]]]), np.hstack([unsure, EB[:, [before]]])
             time = float(system.delays[now] - system.delays[before])
-            delayed, unsure = propagate(A, EA, delayed.astype(float), unsure + _EPS * np.abs(delayed), time, pade_order)
+            unsure = unsure + _EPS * np.abs(delayed)
+            delayed, unsure = propagate(A, moved, delayed.astype(float), unsure, time, pade_order)
             W = W + _add_transpose(np.outer(delayed.sum(axis=1), B[:, now]))
-            EW = EW + _add_transpose(
-                np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(delayed).sum(axis=1), EB[:, now])
-            )
+            EW = EW + np.outer(unsure.sum(axis=1), size[:, now]) + np.outer(np.abs(delayed).sum(axis=1), EB[:, now])
     return W, EW
 
 

@@ -61,6 +61,36 @@ class Model:
 
 
 @dataclass(frozen=True, eq=False)
+class JoinedStacks:
+    """Stacks of several matrices as one (1 + m, entries), so that one product gives all of them at some values."""
+
+    rows: NDArray[Any]
+    shapes: tuple[tuple[int, ...], ...]
+
+    @classmethod
+    def of(cls, stacks: Sequence[NDArray[Any]]) -> JoinedStacks:
+        """The given stacks, side by side."""
+        joined = np.concatenate([stack.reshape(len(stack), -1) for stack in stacks], axis=1)
+        return cls(joined, tuple(stack.shape[1:] for stack in stacks))
+
+    @cached_property
+    def places(self) -> list[tuple[slice, tuple[int, ...]]]:
+        """Columns and shape of each matrix."""
+        edges = [0, *accumulate(map(prod, self.shapes))]
+        return [(slice(*ends), shape) for ends, shape in zip(pairwise(edges), self.shapes, strict=True)]
+
+    def at(self, p: NDArray[Any]) -> list[NDArray[Any]]:
+        """Each matrix at the values `p`, of which the first is 1."""
+        row = p.dot(self.rows)
+        return [row[columns].reshape(shape) for columns, shape in self.places]
+
+    def combine(self, weights: NDArray[Any]) -> list[NDArray[Any]]:
+        """Stacks of sums of the slices with `weights` (slices of the result, 1 + m)."""
+        rows = weights @ self.rows
+        return [rows[:, columns].reshape(len(rows), *shape) for columns, shape in self.places]
+
+
+@dataclass(frozen=True, eq=False)
 class Descriptor:
     """The arrays of the module's docstring, the names of everything, and the free values with their bounds."""
 
@@ -97,6 +127,24 @@ class Descriptor:
         all_arrays = self.S, self.R, self.F, self.X_eta, self.X_x, self.X_u, self.Y_eta, self.Y_x, self.Y_u
         return tuple(np.ascontiguousarray(array, dtype=float) for array in all_arrays)
 
+    @cached_property
+    def joined(self) -> JoinedStacks:
+        """S, [R F], G and J at all values: x' and y are G eta + J (x, u)."""
+        S, R, F, Y_eta, Y_x, Y_u = self.stacks
+        return self._join(S, R, F, (self.X_eta, self.X_x, self.X_u), (Y_eta, Y_x, Y_u))
+
+    @cached_property
+    def joined_sizes(self) -> JoinedStacks:
+        """Sizes of the terms of `joined`; those of rates, which are exact, over the number of roundings of others."""
+        S, R, F, Y_eta, Y_x, Y_u = self.sizes
+        rates = tuple(np.abs(matrix) / _TERMS for matrix in (self.X_eta, self.X_x, self.X_u))
+        return self._join(S, R, F, rates, (Y_eta, Y_x, Y_u))
+
+    def _join(self, S: Any, R: Any, F: Any, rates: Sequence[Matrix], outputs: Sequence[Any]) -> JoinedStacks:
+        above = [np.concatenate((X[None], np.zeros((len(S) - 1, *X.shape)))) for X in rates]
+        G, J_x, J_u = (np.concatenate(both, axis=1) for both in zip(above, outputs, strict=True))
+        return JoinedStacks.of([S, np.concatenate((R, F), axis=2), G, np.concatenate((J_x, J_u), axis=2)])
+
     def with_stacks(self, stacks: Iterable[Matrix], sizes: Iterable[Matrix], **others: Any) -> Descriptor:
         """Copy with other stacks, their sizes, and other attributes by name."""
         S, R, F, Y_eta, Y_x, Y_u = stacks
@@ -118,48 +166,40 @@ def close(
         raise DesignError(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
-    p = np.array([1.0, *(values[name] for name in descriptor.free)], dtype=np.longdouble)
-    d, rounded = descriptor, p.astype(float)
-    S, R, F, Y_eta, Y_x, Y_u = [_sum_stack(p, stack) for stack in d.stacks]
-    S_size, R_size, F_size, Y_eta_size, Y_x_size, Y_u_size = [_sum_stack(rounded, stack) for stack in d.sizes]
-    T, T_error = _solve_extended(S, _beside(R, F), S_size, _beside(R_size, F_size))
-    X, Y = _beside(d.X_x, d.X_u), _beside(Y_x, Y_u)
-    top, bottom = X + d.X_eta @ T, Y + Y_eta @ T
-    size = np.abs(T).astype(float)
+    d, p = descriptor, np.array([1.0, *[values[name] for name in descriptor.free]], dtype=np.longdouble)
+    S, right, G, direct = d.joined.at(p)
+    S_size, right_size, G_size, direct_size = d.joined_sizes.at(p.astype(float))
+    T, T_error = _solve_extended(S, right, S_size, right_size)
+    whole = direct + G.dot(T)
     with np.errstate(invalid="ignore"):  # nothing times infinite: as unsure
-        top_error = np.abs(d.X_eta) @ (T_error + _ROUNDING * size) + _ROUNDING * np.abs(X)
-        bottom_error = np.abs(Y_eta).astype(float) @ T_error
-    bottom_error += _TERMS * _ROUNDING * (_beside(Y_x_size, Y_u_size) + Y_eta_size @ size)
-    n = R.shape[1]
-    for matrix, error in ((top[:, n:], top_error[:, n:]), (bottom[:, n:], bottom_error[:, n:])):
-        matrix[np.abs(matrix) <= error] = 0.0  # white noise that reaches an output by rounding only would be infinite
-    errors = top_error[:, :n], top_error[:, n:], bottom_error[:, :n], bottom_error[:, n:]
-    fine = ExtendedMatrices((top[:, :n], top[:, n:], bottom[:, :n], bottom[:, n:]), errors)
-    A, B, C, D = (matrix.astype(float) for matrix in fine.matrices)
+        error = np.abs(G).astype(float).dot(T_error)
+    error += _TERMS * _ROUNDING * (direct_size + G_size.dot(np.abs(T).astype(float)))
+    n = len(d.X_x)
+    through = whole[:, n:]
+    through[np.abs(through) <= error[:, n:]] = 0.0  # white noise that reaches an output by rounding would be infinite
+    fine = ExtendedMatrices(whole, error, n)
+    rounded = fine.rounded
+    late = () if delays is None else tuple(delays.tolist())
+    origin = Origin(partial(exact_functions, d, dict(values)), rounded, fine, d.inputs, d.outputs)
+    return _named_system(d, sources, late).with_matrices(rounded, origin)
+
+
+@lru_cache(maxsize=64)
+def _named_system(d: Descriptor, sources: tuple[str, ...], delays: tuple[float, ...]) -> LinearSystem:
+    """System of the names of a descriptor, without its numbers."""
+    (n, m), p = d.X_u.shape, len(d.outputs)
     return LinearSystem(
-        A=A,
-        B=B,
-        C=C,
-        D=D,
+        A=np.zeros((n, n)),
+        B=np.zeros((n, m)),
+        C=np.zeros((p, n)),
+        D=np.zeros((p, m)),
         states=d.states,
         inputs=d.inputs,
         outputs=d.outputs,
-        delays=np.zeros(0) if delays is None else delays,
+        delays=np.array(delays),
         sources=sources,
         notes=d.notes,
-        origin=Origin(partial(exact_functions, d, dict(values)), (A, B, C, D), fine, d.inputs, d.outputs),
     )
-
-
-def _beside(left: Matrix, right: Matrix) -> Matrix:
-    return np.concatenate((left, right), axis=1)  # `hstack` takes three times as long for small matrices
-
-
-def _sum_stack(p: NDArray[Any], stack: Matrix) -> Matrix:
-    if p.size == 1:
-        return np.asarray(stack[0])
-    rows = stack.reshape(p.size, -1)
-    return np.asarray(np.dot(p[None], rows).reshape(stack.shape[1:]))  # `tensordot` takes three times as long
 
 
 def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
@@ -170,12 +210,13 @@ def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix
         inverse = np.linalg.inv(scaled.astype(float))
     except np.linalg.LinAlgError:
         return np.zeros_like(right), np.full(right.shape, np.inf)
-    solved = step = (inverse @ right.astype(float)).astype(np.longdouble)
+    solved = step = inverse.dot(right.astype(float)).astype(np.longdouble)
+    terms = S_size.dot(np.abs(solved).astype(float)) + right_size
+    rounding = _TERMS * _ROUNDING * np.abs(inverse).dot(terms / size.astype(float))  # `@` takes twice as long as `dot`
     for _ in range(3):
-        step = inverse @ (right - scaled @ solved).astype(float)
+        step = inverse.dot((right - scaled.dot(solved)).astype(float))
         solved = solved + step
-    terms = (S_size @ np.abs(solved).astype(float) + right_size) / size.astype(float)
-    return solved, np.abs(step) + _TERMS * _ROUNDING * (np.abs(inverse) @ terms)
+    return solved, np.abs(step) + rounding
 
 
 def exact_functions(
@@ -223,6 +264,25 @@ def describe(
     return _describe(mechanism, linear_graph(mechanism), *chosen)
 
 
+def describe_design(
+    mechanism: Mechanism, inputs: Sequence[str], outputs: Sequence[str]
+) -> tuple[Descriptor, Mapping[str, float]]:
+    """Descriptor of a design without free values: that of its structure, which designs share, and its values there.
+
+    Where the structure depends on values it is that of `describe`, without values.
+
+    Raises as `describe`.
+    """
+    structure = structure_of(mechanism)
+    if structure is None or len(structure.values) > _MOST_VALUES or any(isinstance(v, Free) for v in structure.values):
+        return describe(mechanism, inputs, outputs), {}
+    try:
+        found = _describe_structure(structure, tuple(inputs), tuple(outputs)).descriptor
+    except InerterError:  # whose sentence is to name what the mechanism itself has
+        return describe(mechanism, inputs, outputs), {}
+    return found, structure.parameters  # type: ignore[return-value]
+
+
 def describe_with_parameters(
     mechanism: Mechanism, inputs: Sequence[str], outputs: Sequence[str]
 ) -> tuple[Descriptor, dict[str, float]] | None:
@@ -253,23 +313,12 @@ def _describe(mechanism: Mechanism, graph: Graph, inputs: Names, outputs: Names)
 
 @dataclass(frozen=True, eq=False)
 class _ParametricDescriptor:
-    """Descriptor in which every value is a parameter, with its stacks side by side."""
+    """Descriptor in which every value is free, and the names of these in the order of their appearance."""
 
     descriptor: Descriptor
-    parameters: list[str]
-    stacks: NDArray[np.longdouble]  # S, R, F, Y_eta, Y_x, Y_u (1 + parameters, entries)
-    sizes: Matrix
-
-    @cached_property
-    def places(self) -> list[tuple[slice, tuple[int, ...]]]:
-        """Columns and shape of each stack."""
-        shapes = [size.shape[1:] for size in self.descriptor.sizes]
-        edges = [0, *accumulate(map(prod, shapes))]
-        return [(slice(*ends), shape) for ends, shape in zip(pairwise(edges), shapes, strict=True)]
-
-    def split_stacks(self, joined: Any) -> tuple[Any, ...]:
-        """Stacks from rows in which they are side by side."""
-        return tuple([joined[:, columns].reshape(len(joined), *shape) for columns, shape in self.places])
+    names: tuple[str, ...]
+    stacks: JoinedStacks  # S, R, F, Y_eta, Y_x, Y_u
+    sizes: JoinedStacks
 
 
 @lru_cache(maxsize=128)
@@ -279,18 +328,16 @@ def _describe_structure(structure: Structure, inputs: Names, outputs: Names) -> 
     masses = {c.inertia.name for c in mechanism.coordinates if isinstance(c.inertia, Free)}
     names = sorted(d.free, key=lambda name: name not in masses)  # in the order in which `balance` adds them up
     order = [0, *(1 + list(d.free).index(name) for name in names)]
-    joined = (
-        np.concatenate([stack[order].reshape(len(order), -1) for stack in stacks], axis=1)
-        for stacks in (d.stacks, d.sizes)
-    )
-    return _ParametricDescriptor(d, names, *joined)
+    stacks, sizes = ([stack[order] for stack in stacks] for stacks in (d.stacks, d.sizes))
+    ordered = d.with_stacks(stacks, sizes, free={name: d.free[name] for name in names})
+    return _ParametricDescriptor(ordered, tuple(d.free), JoinedStacks.of(stacks), JoinedStacks.of(sizes))
 
 
 def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descriptor:
     """The descriptor of a mechanism from that of its structure: numbers enter the constant slices."""
     d, values = layout.descriptor, structure.parameters
-    chosen = [values[name] for name in layout.parameters]
-    free = {str(value.name): value for name in d.free if isinstance(value := values[name], Free)}
+    chosen = [values[name] for name in d.free]
+    free = {str(value.name): value for name in layout.names if isinstance(value := values[name], Free)}
     places = {name: 1 + i for i, name in enumerate(free)}
     weights = np.zeros((1 + len(free), 1 + len(chosen)), np.longdouble)
     weights[0, 0] = 1.0
@@ -298,11 +345,11 @@ def _with_values(layout: _ParametricDescriptor, structure: Structure) -> Descrip
         place, factor = (places[str(value.name)], 1.0) if isinstance(value, Free) else (0, value)
         weights[place, i] = factor
     return d.with_stacks(
-        layout.split_stacks(weights @ layout.stacks),
-        layout.split_stacks(weights.astype(float) @ layout.sizes),
+        layout.stacks.combine(weights),
+        layout.sizes.combine(weights.astype(float)),
         free=free,
         mechanism=structure.mechanism,
-        parameters=dict(zip(layout.parameters, chosen, strict=True)),
+        parameters=dict(zip(d.free, chosen, strict=True)),
     )
 
 

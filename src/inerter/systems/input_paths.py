@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -83,7 +84,8 @@ def columns_of(paths: Sequence[InputPath]) -> list[Column]:
     return [(f"{source or 'source'} {i}", source, delay) for i, (source, delay) in enumerate(pairs, start=1)]
 
 
-def apply_excitation(descriptor: Descriptor, paths: Sequence[InputPath]) -> Descriptor:
+@lru_cache(maxsize=32)  # since designs of one structure share their descriptor
+def apply_excitation(descriptor: Descriptor, paths: tuple[InputPath, ...]) -> Descriptor:
     """`descriptor`, whose inputs are those that the arrivals reach, with `columns_of` the arrivals as its inputs.
 
     Raises `LinearSystemError` for the displacement of a road whose velocity a damper transmits to an output directly.

@@ -19,10 +19,17 @@ Matrix = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ExtendedMatrices:
-    """A, B, C, D in extended precision, and bounds of what rounding has done to each of their entries."""
+    """The block matrix [A B; C D] in extended precision, and bounds of what rounding has done to its entries."""
 
-    matrices: tuple[Matrix, Matrix, Matrix, Matrix]
-    errors: tuple[Matrix, Matrix, Matrix, Matrix]
+    values: NDArray[np.longdouble]
+    errors: Matrix
+    order: int
+
+    @property
+    def rounded(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+        """A, B, C and D in double precision."""
+        whole, n = self.values.astype(float), self.order
+        return whole[:n, :n], whole[:n, n:], whole[n:, :n], whole[n:, n:]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,15 +52,12 @@ class Origin:
             return self.fine
         if not (set(system.inputs) <= set(self.inputs) and set(system.outputs) <= set(self.outputs)):
             return None
-        rows, columns = [self.outputs.index(o) for o in system.outputs], [self.inputs.index(i) for i in system.inputs]
-
-        def part(matrices: tuple[Matrix, ...]) -> tuple[Matrix, Matrix, Matrix, Matrix]:
-            A, B, C, D = matrices
-            return A, B[:, columns], C[rows], D[np.ix_(rows, columns)]
-
-        if not all(map(np.array_equal, given, part(self.rounded))):
-            return None
-        return ExtendedMatrices(part(self.fine.matrices), part(self.fine.errors))
+        n = self.fine.order
+        rows = [*range(n), *(n + self.outputs.index(name) for name in system.outputs)]
+        columns = [*range(n), *(n + self.inputs.index(name) for name in system.inputs)]
+        chosen = np.ix_(rows, columns)
+        part = ExtendedMatrices(self.fine.values[chosen], self.fine.errors[chosen], n)
+        return part if all(map(np.array_equal, given, part.rounded)) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,8 +96,7 @@ class LinearSystem:
                 raise LinearSystemError(f"{name} must be a matrix of numbers.") from None
             if matrix.ndim != 2:
                 raise LinearSystemError(f"{name} must be a matrix, got an array of shape {matrix.shape}.")
-            if not (math.isfinite(np.vdot(matrix, matrix)) or np.isfinite(matrix).all()):  # the first takes less time
-                raise LinearSystemError(f"{name} has entries that are not finite numbers.")
+            _check_finite(name, matrix)
             object.__setattr__(self, name, matrix)
         n, m, p = self.A.shape[0], self.B.shape[1], self.C.shape[0]
         wanted = {"A": (n, n), "B": (n, m), "C": (p, n), "D": (p, m)}
@@ -123,6 +126,18 @@ class LinearSystem:
     def fine(self) -> ExtendedMatrices | None:
         """The matrices before they were rounded; None where they were given, or changed by hand."""
         return None if self.origin is None else self.origin.of(self)
+
+    def with_matrices(self, matrices: tuple[Matrix, Matrix, Matrix, Matrix], origin: Origin) -> LinearSystem:
+        """System with the same names, sources and delays, and other matrices of the same shapes, with their origin.
+
+        Raises `LinearSystemError` if a number is not finite.
+        """
+        for name, matrix in zip("ABCD", matrices, strict=True):
+            _check_finite(name, matrix)
+        found = object.__new__(LinearSystem)  # as a new one would check all names again
+        A, B, C, D = matrices
+        found.__dict__.update(self.__dict__, A=A, B=B, C=C, D=D, delays=self.delays.copy(), origin=origin)
+        return found
 
     def subsystem(
         self, inputs: Sequence[str] | str | None = None, outputs: Sequence[str] | str | None = None
@@ -155,6 +170,11 @@ class LinearSystem:
             f"LinearSystem({self.order} states; inputs {', '.join(self.inputs) or 'none'}; "
             f"outputs {', '.join(self.outputs) or 'none'})"
         )
+
+
+def _check_finite(name: str, matrix: Matrix) -> None:
+    if not (math.isfinite(np.vdot(matrix, matrix)) or np.isfinite(matrix).all()):  # the first takes less time
+        raise LinearSystemError(f"{name} has entries that are not finite numbers.")
 
 
 def check_system(system: object) -> None:

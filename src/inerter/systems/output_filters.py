@@ -7,7 +7,7 @@ were given, and what an output owes to the free values stays affine in them.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,8 @@ EquationStacks = tuple[Any, ...]  # S, R, F, Y_eta, Y_x, Y_u
 FilteredOutputs = list[tuple[int, Filter, slice]]  # output, filter, its states
 
 
-def with_output_filters(descriptor: Descriptor, filters: Sequence[Filter | None]) -> Descriptor:
+@lru_cache(maxsize=32)  # since designs of one structure share their descriptor
+def with_output_filters(descriptor: Descriptor, filters: tuple[Filter | None, ...]) -> Descriptor:
     """`descriptor` with a filter, or none, on each output."""
     d, n = descriptor, descriptor.X_x.shape[0]
     chosen = [(i, f) for i, f in enumerate(filters) if f is not None]

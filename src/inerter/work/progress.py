@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from threading import Event, RLock, Thread
 from typing import Protocol
 
-from inerter.formatting import format_number
+from inerter.formatting import format_count, format_number
 
 LOGGER = logging.getLogger("inerter")
 _EVERY = 1.0  # seconds after which a listener is called, also without a new step
@@ -35,6 +35,8 @@ class ProgressStep:
     >>> step = it.ProgressStep("search: starts", done=2, total=16)
     >>> step.done / step.total
     0.125
+    >>> print(it.ProgressStep("starts", evaluations=1))
+    starts, 1 evaluation
     """
 
     what: str
@@ -50,7 +52,7 @@ class ProgressStep:
     def __str__(self) -> str:
         """The step in one line, without the time."""
         count = f" {self.done} of {self.total}" if self.total else f" {self.done}" if self.done else ""
-        evaluations = f", {self.evaluations} evaluations" if self.evaluations else ""
+        evaluations = f", {format_count(self.evaluations, 'evaluations')}" if self.evaluations else ""
         best = "" if self.best is None else f", lowest {format_number(self.best, 4)}"
         return f"{': '.join(filter(None, (*self.within, self.what)))}{count}{evaluations}{best}"
 

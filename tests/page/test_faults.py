@@ -438,3 +438,12 @@ def test_reasons_and_values_in_conditions_are_read_without_a_pointer(visitor: Vi
     reasons.wait_for()
     assert reasons.inner_text().startswith("J5 of S3: failed: ")
     assert "amplitude of the force" in reasons.inner_text()
+    page.click("#step-2")
+    force = page.get_by_label("force of J5")
+    for text in ("5 kg", "1"):  # a number alone is in the unit of the example
+        force.fill(text)
+        force.press("Enter")
+        if text == "5 kg":
+            page.locator("#step-2 ~ .menu-body .problem", has_text="5 kg").wait_for()
+            assert reasons.is_visible()
+    reasons.wait_for(state="detached")

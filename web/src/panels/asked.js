@@ -16,7 +16,7 @@ import { Entry } from "./values.js";
  * it */
 
 /** A setting of an index: one of `options`, or a quantity.
- * @typedef {{key: string, sentence: string, options?: string[], example: string}} Setting */
+ * @typedef {{key: string, sentence: string, options?: string[], example: string, unit: string}} Setting */
 
 const SENSES = ["at_most", "at_least", "equal"];
 const PLACE = ["study", "subject_to"];
@@ -67,11 +67,6 @@ export function Constraints({ store }) {
     if (value.trim()) take(ADDED, before, [...PLACE, ...of.split("."), sense], completed(value.trim(), before));
     setValue("");
   };
-  /** @param {string} id */
-  const wrong = (id) => {
-    const sentence = wronglyTyped(state, id);
-    return sentence && html`<p class="problem" role="alert">${sentence}</p>`;
-  };
   return html`<b class="legend">Constraints on every design</b>
     ${limitsOf(state).map(({ path, sense, value }) => {
       const of = path.join(".");
@@ -84,7 +79,7 @@ export function Constraints({ store }) {
           onClick=${() => store.change({ type: "placed", place: PLACE,
             value: limited(entryAt(state.history.present.study, PLACE), [...path, sense], undefined) })}>
           Delete</button></p>
-        ${wrong(id)}`;
+        <${Wrong} state=${state} id=${id} />`;
     })}
     <div class="row">
       <${Select} label="Add one on" name="of" value=${of} set=${setOf}
@@ -95,7 +90,7 @@ export function Constraints({ store }) {
         placeholder=${unit ? `in ${printed(unit)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
         onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />
       <button type="button" class="edged" onClick=${add}>Add</button>
-    </div>${wrong(ADDED)}`;
+    </div><${Wrong} state=${state} id=${ADDED} />`;
 }
 
 const ADDED = "limit to be added"; // the field of one
@@ -112,25 +107,41 @@ function useLimitable(state) {
   return known.current;
 }
 
-/** Settings of an index, as the library declares them: words to choose from, and quantities, which an index that the
- * file does not define has in common with all others. @param {{store: Store, index: string}} props */
-export function IndexSettings({ store, index }) {
+/** Settings of an index, as the library declares them: quantities, which an index that the file does not define has in
+ * common with all others, and of the one that is minimised words to choose from.
+ * @param {{store: Store, index: string, isGoal: boolean}} props */
+export function IndexSettings({ store, index, isGoal }) {
   const state = store.get();
   const { study } = state.history.present;
   const isOwn = own(study.indices, index) !== undefined;
   const { choices = [], settings = [] } = kindOfIndex(state, index) ?? {};
   /** @param {string} key */
   const here = (key) => entryAt(study, ["indices", index, key]) ?? entryAt(study, ["study", key]) ?? "";
-  /** @param {string} key */
-  const placer = (key) => (/** @type {string} */ value) => store.change({ type: "placed",
-    place: isOwn ? ["indices", index, key] : ["study", key], value: value || undefined });
-  /** @param {string} key */
-  const chooser = (key) => (isOwn ? placer(key) : (/** @type {string} */ value) => define(store, index, key, value));
-  return [...choices, ...settings].map((/** @type {Setting} */ { key, sentence, options, example }) => html`<p
-    class="row" key=${key} title=${sentence}>${options ? html`<${Select} label=${key} name=${key} value=${here(key)}
-        choices=${[["", "none"], ...options]} set=${chooser(key)} />`
-      : html`<label>${key.replaceAll("_", " ")} <${Field} class="entry" text=${here(key)} placeholder=${`such as ${
-        example}`} done=${placer(key)} /></label>`}</p>`);
+  /** @param {string} key @param {string} value @returns {import("../state/document.js").Change} */
+  const change = (key, value) =>
+    ({ type: "placed", place: isOwn ? ["indices", index, key] : ["study", key], value: value || undefined });
+  /** @param {string} key @param {string} value */
+  const choose = (key, value) => (isOwn ? store.change(change(key, value)) : define(store, index, key, value));
+  /** @param {Setting} setting @param {string} typed */
+  const take = ({ key, unit, example }, typed) => {
+    const text = completed(typed.trim(), example);
+    if (text === "") store.change(change(key, text));
+    else enter(store, { id: `${key} of ${index}`, unit, before: example, turn: state.turn }, text, change(key, text));
+  };
+  return html`${isGoal && choices.map((/** @type {Setting} */ { key, sentence, options = [] }) => html`<p class="row"
+      key=${key} title=${sentence}><${Select} label=${key} name=${key} value=${here(key)}
+        choices=${[["", "none"], ...options]} set=${(/** @type {string} */ value) => choose(key, value)} /></p>`)}
+    ${settings.map((/** @type {Setting} */ setting) => html`<p class="row" key=${setting.key} title=${setting.sentence}>
+      <label>${setting.key.replaceAll("_", " ")} of ${index} <${Field} class="entry" text=${here(setting.key)}
+        placeholder=${`such as ${setting.example}`}
+        done=${(/** @type {string} */ text) => take(setting, text)} /></label></p>
+      <${Wrong} state=${state} id=${`${setting.key} of ${index}`} />`)}`;
+}
+
+/** Why nothing was taken over from a field. @param {{state: State, id: string}} props */
+function Wrong({ state, id }) {
+  const sentence = wronglyTyped(state, id);
+  return sentence === "" ? null : html`<p class="problem" role="alert">${sentence}</p>`;
 }
 
 /** Defines an index with a setting in the place of one that has none, in one step.

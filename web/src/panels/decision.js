@@ -80,7 +80,8 @@ function Goal({ store }) {
         ${indices.map(({ symbol, title }) => html`<label key=${symbol}><input type="radio" name="goal" value=${symbol}
           checked=${symbol === goal?.symbol} onChange=${() => store.look({ index: symbol })} />
           ${title} ${!isWord(symbol) && title !== symbol && html`<b>${symbol}</b>`}</label>`)}</fieldset>
-      ${goal && html`<${IndexSettings} store=${store} index=${goal.symbol} />`}
+      ${indices.map(({ symbol }) => html`<${IndexSettings} key=${symbol} store=${store} index=${symbol}
+        isGoal=${symbol === goal?.symbol} />`)}
       <${Select} label="Method" ...${methodChoice(store)} />
       <${AskedPanel} store=${store} />
     </div></details>`;

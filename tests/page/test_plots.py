@@ -273,9 +273,10 @@ def test_a_sweep_is_drawn_in_the_unit_of_the_study_and_taken_whole(serve: Callab
     wait_until(lambda: (page.input_value("#network-text"), visitor.values()) == before)
 
 
-def test_the_time_of_a_history_is_that_of_the_picture(serve: Callable[..., Served], visitors: Any) -> None:
-    visitor = visitors(serve(EXAMPLES / "ball_screw.toml")).visit()
+def test_the_time_of_a_history_is_that_of_the_picture(visitor: Visitor) -> None:
     page = visitor.page
+    visitor.open(EXAMPLES / "ball_screw.toml")
+    page.wait_for_selector("text=ball_screw.toml is open")
     page.click("#tab-history")
     page.wait_for_selector(".plot .cursor", state="attached")
     visitor.drawn()

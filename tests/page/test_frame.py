@@ -252,12 +252,20 @@ def test_one_button_alone_is_filled(served: Served, visitors: Callable[..., Visi
             ]
 
 
+HIDDEN = """() => {
+  const { scrollHeight, clientHeight } = document.getElementById("tab-panel");
+  return scrollHeight - clientHeight;
+}"""
+
+
 def test_values_that_nobody_has_chosen_are_optimised_from_the_verdict_and_taken(visitor: Visitor) -> None:
     """Of a train, whose optimum is a job: it is begun beside the verdict, and its values are there when it is done."""
     page = visitor.page
     visitor.open(EXAMPLES / "train.toml")
     page.wait_for_selector("text=train.toml is open")
     visitor.settled()
+    visitor.drawn()
+    assert page.evaluate(HIDDEN) == 0  # the warning leaves room for the whole plot
     page.locator("#verdict").get_by_role("button", name="Values not chosen: optimise all layouts").click()
     page.wait_for_selector(".notice:has-text('The best J1 of S1, S3')", timeout=120_000)
     visitor.chosen()

@@ -288,6 +288,16 @@ def test_an_earthquake_record_shakes_the_ground(load, tmp_path):
     np.testing.assert_array_equal(again["floor_2_acceleration"], run["floor_2_acceleration"])
 
 
+@pytest.mark.parametrize(("mark", "point"), [(";", ","), (";", "."), ("\t", ","), (",", ".")])
+def test_a_record_has_the_delimiter_and_the_decimal_mark_of_its_program(load, tmp_path, mark, point):
+    rows = "\r\n".join(
+        mark.join(cells).replace(".", point) for cells in [("0.0", "0.0"), ("0.5", "1.5"), ("2.0", "0.25")]
+    )
+    (tmp_path / "road.csv").write_bytes(f"\ufefftime [s]{mark}value [mm]\r\n{rows}\r\n".encode())
+    signal = load(CAR, (SEED, 'kind = "sampled"\nfile = "road.csv"')).make_signal()
+    np.testing.assert_allclose(signal([0.0, 0.5, 2.0]), [0.0, 1.5e-3, 0.25e-3], atol=1e-15)
+
+
 def test_a_car_on_shaken_ground_has_its_road_on_it(load, tmp_path):
     """Over ground with a constant acceleration a car sinks as under so much more weight."""
     moved = 'kind = "step"\ninput = "ground_acceleration"\nheight = "2 m/s^2"'
@@ -319,7 +329,12 @@ def test_every_key_is_in_the_documentation():
 
 SEED = 'kind = "multisine"\nseed = 3'
 BAD = {
-    "range": (CAR, [('"3 kN s/m"', '{ from = "1 N s/m", to = "2 N s/m" }')], "elements.c", ["range", "one value"]),
+    "range": (
+        CAR,
+        [('"3 kN s/m"', '{ from = "1 N s/m", to = "2 N s/m" }')],
+        "elements.c",
+        ["range", "one value", "--to simulation"],
+    ),
     "no unit": (CAR, [('"300 kg"', '"300"')], "elements.b", ["unit missing"]),
     "negative": (CAR, [('"300 kg"', '"-300 kg"')], "elements.b", ["not positive"]),
     "model": (CAR, [('"quarter-car"', '"quarter_car"')], "vehicle.model", ['"rig"', 'Did you mean "quarter-car"?']),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 import os
 import re
@@ -16,6 +17,7 @@ from inerter.signals.arguments import Array, positive_number, random_generator, 
 from inerter.signals.signal import SampledSignal, Signal
 from inerter.units import parse_quantity, quote_value
 
+_DELIMITERS = (";", "\t")  # else a comma; with these a decimal comma may be
 _HEADING = re.compile(r"\s*(\w+)\s*\[([^\]]+)\]\s*")
 
 
@@ -57,7 +59,8 @@ def read_signal(
     """Signal of a table of samples over time in a file, as by `Signal.sampled`.
 
     `path` is a CSV file with a column of times and one of values, with their units in the header, such as
-    `time [s], value [mm]`; `unit` is that of the signal, m, N or m/s^2.
+    `time [s], value [mm]`, or with semicolons or tabs, and then decimal commas or points; `unit` is that of the signal,
+    m, N or m/s^2.
 
     Raises `SignalError`, which names the line, for a file that cannot be read in this way, and as `Signal.sampled`
     does.
@@ -96,12 +99,16 @@ def _rows(name: str, what: str, units: dict[str, str]) -> list[tuple[int, list[s
     """The non-empty lines with their numbers, each of two cells; at least one."""
     try:
         with open(name, encoding="utf-8-sig", newline="") as file:
-            reader = csv.reader(file, strict=True)
+            text = file.read()
+            mark = next((mark for mark in _DELIMITERS if mark in text.lstrip().partition("\n")[0]), ",")
+            reader = csv.reader(io.StringIO(text, newline=""), strict=True, delimiter=mark)
             rows = [(reader.line_num, cells) for cells in reader if any(cell.strip() for cell in cells)]
     except FileNotFoundError:
         raise SignalError(f"{name}: file not found in {os.getcwd()!r}. Check the path.") from None
     except (OSError, ValueError, csv.Error) as problem:
         raise SignalError(f"The {what} {name!r} cannot be read as a CSV file: {problem}.") from None
+    if mark != ",":
+        rows = [(line, [cell.replace(",", ".") for cell in cells]) for line, cells in rows]
     for line, cells in rows:
         if len(cells) != 2:
             raise SignalError(

@@ -79,7 +79,7 @@ class ElementCodec(Codec):
             value = amount(raw)
             return kinds_by_unit()[value.unit].of(value.value, name)
         if not self.free:
-            hint = "Write one, perhaps the best that inerter run found (summary.csv)."
+            hint = "Write one, or take the file of a best design: inerter export STUDY.toml --to simulation"
             raise EntryError(got="a range", fault="a simulation needs one value", hint=hint)
         found = _range_codec_for(raw).load(raw, context)
         if found is INVALID:

@@ -221,7 +221,7 @@ def test_a_number_and_its_unit_stay_on_one_line_and_words_part(value, unit):
 )
 def test_numbers_of_any_size(value, text):
     assert format_number(value, 3) == text
-    assert format_share(value / 100.0) == f"{text} %" or abs(value) < 1e-300
+    assert format_share(value / 100.0) == (text if math.isnan(value) else f"{text} %") or abs(value) < 1e-300
     quantity = text if not math.isfinite(value) else f"{text} kg"
     assert format_quantity(value, "kg", 3) == quantity
     assert typeset_quantity(value, "kg") == typeset(format_quantity(value, "kg")).replace(" ", "\N{NO-BREAK SPACE}")

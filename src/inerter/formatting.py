@@ -241,7 +241,7 @@ def format_share(share: float, digits: int = 3, sign: str = "") -> str:
     >>> format_share(0.12345), format_share(-0.02, sign="+")
     ('12.3 %', '-2 %')
     """
-    return f"{format_number(100.0 * share, digits, sign)} %"
+    return "n/a" if math.isnan(share) else f"{format_number(100.0 * share, digits, sign)} %"
 
 
 def format_percent(value: float, error: float = math.nan, bound: float = math.nan) -> str:

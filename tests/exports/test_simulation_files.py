@@ -45,7 +45,7 @@ def test_a_seated_car_with_friction_and_a_gap_moves_as_from_the_file(tmp_path: P
     request = read_back(seated, tmp_path, speed=15.0)
     assert request.vehicle["model"] == "half-car"
     assert {"k", "k_2", "k_3", "k_4"} <= set(request.elements)
-    bump = it.bump(height=0.05, length=1.0, start=0.5, speed=15.0)
+    bump = it.bump(height=0.01, length=1.0, start=0.5, speed=15.0)
     run = it.simulate(seated, road=bump, duration=1.0, step=1e-3)
     again = it.simulate(request.design(), road=request.make_signal(), duration=1.0, step=1e-3, speed=request.speed)
     for name in ("occupant_acceleration", "tyre_rear_load", "front_travel"):
@@ -66,7 +66,7 @@ def test_what_files_have_no_model_for_is_written_part_by_part(tmp_path: Path) ->
 
 def test_what_a_file_cannot_state_is_refused() -> None:
     car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(20e3) | it.Damper(2e3))
-    with pytest.raises(ExportError, match="has the friction and gaps of the design"):
+    with pytest.raises(ExportError, match="Leave --linear"):
         it.export(car, "simulation", speed=25.0, linear=True)
     own = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(20e3, name="value"))
     with pytest.raises(

@@ -54,8 +54,12 @@ BAD = {
         "the unit \"furl\" of 'height' is not a unit of length",
     ),
     "unit of another kind": ("distance [s], height [mm]\n0,0\n1,1\n", 'the unit "s" .* is not a unit of length'),
+    "times": (
+        "time [s], height [mm]\n0,0\n1,1\n",
+        r"of which no other is a length. Add a column \"distance \[m\]\" to the file, or give interval=0.1",
+    ),
     "a word": (HEADER + "0, 0\n1, 1\n2, 1\n3, one\n", 'line 5: expected a number with a decimal point, got "one"'),
-    "not a number": (HEADER + "0, 0\n1, nan\n", "height .* missing or not finite at 1 points, .* point 1"),
+    "not a number": (HEADER + "0, 0\n1, nan\n", r"height .* missing or not finite at point 1\. Fill"),
     "an empty cell": (HEADER + "0, 1\n1,\n", "height .* missing or not finite"),
     "a third cell": (HEADER + "0, 0, 5\n1, 0, 5\n", "line 1: the header has 2 columns, the rows below have 3"),
     "decimal commas among commas": (HEADER + "0,5, 1,2\n1,5, 1,2\n", "requires a delimiter other than a comma"),

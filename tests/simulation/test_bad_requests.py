@@ -147,8 +147,8 @@ REQUESTS: dict[str, tuple[Callable[[], object], str]] = {
         r"static load is not carried by springs",
     ),
     "a periodic state of what does not repeat": (
-        lambda: drive(road=table(), initial="periodic", duration=None),
-        r"does not repeat",
+        lambda: drive(road=table(), initial="periodic"),  # which has a duration
+        r'does not repeat: give a duration, and an initial state other than "periodic"; or a periodic signal',
     ),
     "a periodic state of another length": (
         lambda: drive(initial="periodic", duration=0.3),

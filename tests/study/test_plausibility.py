@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 from folders import EXAMPLES
 
@@ -48,6 +49,17 @@ def test_check_says_which_class_a_road_is(tmp_path, capsys, roughness, letter):
 def test_check_doubts_what_no_road_or_vehicle_is(tmp_path, capsys, old, new, warning):
     assert old in QUARTER
     assert warning in checked(tmp_path, capsys, QUARTER.replace(old, new))
+
+
+def test_a_profile_in_other_units_than_it_says_is_told_to_check_them(tmp_path, capsys):
+    """Not to give another roughness: the study has none of its own."""
+    heights = np.cumsum(np.random.default_rng(0).normal(size=4000))
+    rows = "\n".join(f"{0.05 * i:.2f},{h!r}" for i, h in enumerate(heights.tolist()))
+    (tmp_path / "road.csv").write_text(f"distance [m],height [m]\n{rows}\n", encoding="utf-8")
+    text = checked(tmp_path, capsys, QUARTER.replace('roughness = "5e-7 m^3/cycle"', 'profile = "road.csv"'))
+    assert "no public road is as rough as class H" in text
+    assert "Check the units of the profile, and its columns." in text
+    assert "Give Gd(n0)" not in text
 
 
 def test_an_absorber_is_no_vehicle_on_a_road(tmp_path, capsys):

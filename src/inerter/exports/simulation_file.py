@@ -29,13 +29,15 @@ from inerter.vehicle.vehicle import Vehicle, VehicleModel
 
 Tables = dict[str, Any]
 _LAYOUT, _DURATION, _SPEED = "design", 5.0, 10.0  # [s], [m/s]
-_BUMP = {"height": 0.05, "length": 1.0, "start": 0.5}  # [m], [m], [s]
+_BUMP = {"height": 0.01, "length": 1.0, "start": 0.5}  # [m], [m], [s]
 _AMPLITUDES = {"m": 1e-3, "N": 100.0, "N m": 100.0, "m/s^2": 1.0}  # of a sine of 1 Hz, by the unit of its input
 
 
 def _make(request: ExportSpec, suffix: str) -> str:
     if request.linear:
-        raise ExportError("A simulation file has the friction and gaps of the design. Leave linear out.")
+        raise ExportError(
+            "A simulation file has the friction and gaps of the design. Leave --linear (linear=True) out."
+        )
     names = _ElementNames()
     table, networks = _vehicle(request.vehicle, names)
     layout = StrutLayout({mount: names.expression(network) for mount, network in networks.items()})

@@ -54,9 +54,10 @@ class Profile:
             array = np.array(values, dtype=float)
             bad = np.flatnonzero(~np.isfinite(array))
             if bad.size:
+                several = f"{bad.size} points, the first is " if bad.size > 1 else ""
                 raise RecordError(
-                    f"The {name} of {self.source!r} is missing or not finite at {bad.size} points, the first is "
-                    f"point {bad[0]}. Fill these gaps, or cut the profile there."
+                    f"The {name} of {self.source!r} is missing or not finite at {several}point {bad[0]}. Fill such "
+                    "gaps, or cut the profile there."
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)

@@ -23,7 +23,7 @@ from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import SampledSignal
-from inerter.units import parse_quantity, quote_value
+from inerter.units import is_unit, is_unit_for, parse_quantity, quote_value
 from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
@@ -208,11 +208,19 @@ def _select_columns(
 
 def _missing_column(source: str, role: str, left: Sequence[Channel], channels: Sequence[Channel]) -> RecordError:
     there = ", ".join(channel.label for channel in channels[:12])
+    found = f"{source}: {role} column not found by an obvious name; available: {there}"
+    even = (", or give ", Remedy(Action.INTERVAL, 0.1)) if role == "distance" else ()
+    lengths = [
+        channel
+        for channel in left or channels
+        if not channel.unit or (is_unit(channel.unit) and is_unit_for(channel.unit, "m"))
+    ]
+    if not lengths:
+        return RecordError(f'{found}, of which no other is a length. Add a column "{role} [m]" to the file', *even, ".")
     return RecordError(
-        f'{source}: {role} column not found by an obvious name; available: {there}. Name it "{role}" in the file, or '
-        f"select it, such as ",
-        Remedy(Action.COLUMN, ((role, (left or channels)[0].name),)),
-        *((", or give ", Remedy(Action.INTERVAL, 0.1)) if role == "distance" else ()),
+        f'{found}. Name it "{role}" in the file, or select it, such as ',
+        Remedy(Action.COLUMN, ((role, lengths[0].name),)),
+        *even,
         ".",
     )
 

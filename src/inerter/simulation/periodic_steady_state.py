@@ -32,7 +32,8 @@ def common_period(signals: Sequence[Signal | None]) -> float:
     for signal in moving:
         if signal.period is None:
             raise SimulationError(
-                f"The signal {signal.label!r} does not repeat: give a duration, or a periodic signal."
+                f"The signal {signal.label!r} does not repeat: give a duration, and an initial state other than "
+                '"periodic"; or a periodic signal.'
             )
     if not moving:
         raise SimulationError("Nothing moves the mechanism: give a road, forces or a displacement.")

@@ -42,17 +42,16 @@ def class_words(road: Road) -> str:
 def road_warnings(road: Road) -> Iterator[str]:
     """Warnings on an implausible road, or an implausible speed on it."""
     letter = road.iso8608_class.letter
+    stated = 'Give Gd(n0) in m^3 (roughness = "256e-6 m^3"), kappa = Gd(n0) n0^2 / 2 in m^3/cycle, or class = "C".'
+    if road.shape is not None:
+        stated = "Check the units of the profile, and its columns."
     if letter in _ROUGHEST:
         yield (
             f"Warning: no public road is as rough as class {letter} of ISO 8608. The road has Gd(n0) = "
-            f"{_millionths(road)} m^3, class C {round(ROAD_CLASSES['C'].mean / 1e-6)}e-6 m^3. Give Gd(n0) in m^3 "
-            '(roughness = "256e-6 m^3"), kappa = Gd(n0) n0^2 / 2 in m^3/cycle, or class = "C".'
+            f"{_millionths(road)} m^3, class C {round(ROAD_CLASSES['C'].mean / 1e-6)}e-6 m^3. {stated}"
         )
     elif _density(road) < _SMOOTHEST:
-        yield (
-            f"Warning: no road is as smooth as Gd(n0) = {_millionths(road)} m^3 (class A has 16e-6 m^3). Give "
-            "Gd(n0) in m^3, or kappa = Gd(n0) n0^2 / 2 in m^3/cycle."
-        )
+        yield (f"Warning: no road is as smooth as Gd(n0) = {_millionths(road)} m^3 (class A has 16e-6 m^3). {stated}")
     low, high = _SPEEDS
     if not low <= road.speed <= high:
         slow, driven, fast = format_alike([low, road.speed, high], "m/s")

@@ -74,6 +74,7 @@ def simulated(vehicle: object, signal: it.Signal, step: float, duration: float, 
         [(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2)], often=[("fmu3", 1)], kept=2
     ),
 )
+@pytest.mark.usefixtures("unoptimised")
 def test_fmpy_has_nothing_against_it(kind: str, number: int) -> None:
     data = it.export(design(number), kind)
     assert validate_fmu(io.BytesIO(data)) == []
@@ -329,6 +330,7 @@ def test_its_sources_alone_make_the_same_library(strut: it.Network, kind: str, t
     assert names == declared(kind)
 
 
+@pytest.mark.usefixtures("unoptimised")
 def test_what_is_in_the_archive() -> None:
     with zipfile.ZipFile(io.BytesIO(it.export(design(1), "fmu3", title="half car"))) as archive:
         names = set(archive.namelist())

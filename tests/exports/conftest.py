@@ -15,7 +15,7 @@ def examples() -> str:
 
 @pytest.fixture
 def unoptimised(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Libraries of FMUs take a third of the time to compile; the motions of `test_fmu.py` are of those that users get."""
+    """Libraries of FMUs compile in a third of the time; the motions of `test_fmu.py` are of those that users get."""
     options = tuple("-O0" if option == "-O2" else option for option in platforms._OPTIONS)
     assert options != platforms._OPTIONS
     monkeypatch.setattr(platforms, "_OPTIONS", options)

@@ -265,10 +265,10 @@ class ApproximateLinear(FormerMethodNames):
         if loose:  # the model closes gaps, which may damp what is not damped while they are open
             unseen = max(unseen, left)
         if unseen <= _LOST and (definition.is_peak or not loose):
-            return self._combine(definition, model, gains, drive, unseen), model.peaked
+            return self._combine(definition, model, gains, drive, unseen, loose=loose), model.peaked
         if loose:
             share, above = (0.0, 0.0) if definition.is_peak else model.above(gains.mean(axis=0), drive.omega)
-            alone = self._combine(definition, None, gains, drive, left, above)
+            alone = self._combine(definition, None, gains, drive, left, above, loose)
             sources = (*alone.error_sources, ErrorSource("band above the highest frequency", 0.5 * share))
             return replace(alone, notes=(_LOOSE,), error_sources=sources), 0.0
         at, decay = format_quantity(abs(model.pole.imag), "rad/s", 3), format_quantity(-model.pole.real, "1/s", 2)
@@ -291,10 +291,12 @@ class ApproximateLinear(FormerMethodNames):
         drive: ExcitedInputs,
         unseen: float = 0.0,
         above: Array | float = 0.0,
+        loose: bool = False,
     ) -> Estimate:
         """The index from squared gains (realisations, outputs, harmonics), of which a share may be `unseen`.
 
-        Without a model, squares `above` the harmonics (outputs,) are added.
+        Without a model, squares `above` the harmonics (outputs,) are added. `loose` if there is play: then the model
+        may be so unlike the motion that a window is wide for the difference, and one twice as wide would not show it.
         """
         lines = None if known is None else known.squares(drive.omega)
         rest = gains if lines is None else gains - lines
@@ -302,11 +304,12 @@ class ApproximateLinear(FormerMethodNames):
         smoothed: tuple[ErrorSource, ...] = ()
         if definition.is_peak:
             weight = float(weights[0])
-            windows = [self._window(drive.omega, times) for times in (1.0, 2.0)]
-            (value, scatter, found), (wider, *_) = (
+            windows = [self._window(drive.omega, times) for times in ((1.0, 2.0, 0.0) if loose else (1.0, 2.0))]
+            (value, scatter, found), *others = (
                 largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows
             )
-            smoothed = (ErrorSource("smoothing", abs(wider - value) / max(value, 1e-300)),)
+            changes = sum(abs(other - value) for other, *_ in others)
+            smoothed = (ErrorSource("smoothing", changes / max(value, 1e-300)),)
             value, scatter = weight * value, weight * scatter
             peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in found)
         else:

@@ -15,7 +15,7 @@ from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.records.dropouts import MAD
 from inerter.records.record import Record
 from inerter.records.saturation import saturated_samples
-from inerter.records.smoothing import Motion, quietest, resolution, smooth_displacement
+from inerter.records.smoothing import Motion, interpolate, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
 from inerter.simulation.initial_state import initial_state
@@ -29,6 +29,7 @@ MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours witho
 _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
 _AT_REST = 0.02  # of the largest velocity
+_KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2
 
 
 class SimulationCount:
@@ -96,7 +97,7 @@ class Experiment:
         """
         time = self.motion.time - self.motion.time[0] - delay
         within = np.clip(time, 0.0, self.motion.time[-1] - self.motion.time[0])
-        height, velocity = _signal(self.motion).sample(within)
+        height, velocity = _signal(self.motion, _knots_per_interval(self.motion)).sample(within)
         return self.with_motion(height, np.where(time == within, velocity, 0.0))
 
     def force(self, system: PiecewiseSystem, samples: int | None = None) -> Matrix | None:
@@ -111,9 +112,10 @@ class Experiment:
         if moving:
             state = _consistent_velocities(system, state, self.table.slope[0])
         count = self.size if samples is None else min(samples, self.size)
-        integration = event_driven.start(system, _truncate(self.table, count - 1), state)
-        parts = steps_per_interval(integration)
-        if parts > 1:
+        knots = _knots_per_interval(self.motion)
+        integration = event_driven.start(system, _truncate(self.table_in(knots), (count - 1) * knots), state)
+        parts = knots * steps_per_interval(integration)
+        if parts > knots:
             integration = event_driven.start(system, _truncate(self.table_in(parts), (count - 1) * parts), state)
         integration.advance(integration.table.time.size - 1)
         if not integration.status.ok:
@@ -225,16 +227,28 @@ def steps_per_interval(integration: event_driven.Integration) -> int:
 
 def _table(motion: Motion, parts: int = 1) -> InputTable:
     duration = float(motion.time[-1] - motion.time[0])
-    return tabulate([_signal(motion)], [0.0], duration, duration / (motion.time.size - 1) / parts, every=parts)
+    knots = min(_knots_per_interval(motion), parts)
+    return tabulate([_signal(motion, knots)], [0.0], duration, duration / (motion.time.size - 1) / parts, every=parts)
 
 
-def _signal(motion: Motion) -> Signal:
+def _knots_per_interval(motion: Motion) -> int:
+    """Number of knots per interval, so that cubics between them follow the fastest motion to 1e-5."""
+    interval = float(motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
+    return 1 << min(max(math.ceil(math.log2(_KNOTS * motion.highest * interval)), 0), _MOST_KNOTS)
+
+
+def _signal(motion: Motion, knots: int) -> Signal:
+    """The motion as cubics between so many knots per interval."""
     time = motion.time - motion.time[0]
     even = np.linspace(0.0, time[-1], time.size)
     if np.max(np.abs(time - even)) > _ROUNDED * even[1]:  # times that a file rounds, in even steps all the same
         time = even
+    slope = motion.velocity
     height = motion.displacement - motion.displacement[0]  # where the table stands at the start does not matter
-    return Signal.sampled(time, height, derivative=motion.velocity, label="measured displacement")
+    if knots > 1:
+        coarse, time = time, np.linspace(0.0, time[-1], knots * (time.size - 1) + 1)
+        height, slope = interpolate(coarse, height, time)
+    return Signal.sampled(time, height, derivative=slope, label="measured displacement")
 
 
 def _truncate(table: InputTable, segments: int) -> InputTable:

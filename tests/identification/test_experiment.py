@@ -1,4 +1,4 @@
-"""Forces of devices moved as a record was read, against closed forms."""
+"""Forces of devices moved as a record was read, and its sensors' errors, against closed forms."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import pytest
 import inerter as it
 from inerter.identification.experiment import experiment_of
 from inerter.identification.models import on_rig
+from inerter.identification.sensors import encoder_noise
 from inerter.systems.piecewise import piecewise
 
 
@@ -30,3 +31,15 @@ def test_the_force_of_an_elastic_device_of_few_samples_in_a_period(per_period: f
     basis = np.column_stack([np.sin(omega * time), np.cos(omega * time)])[late]
     found, true = (np.linalg.lstsq(basis, values[late], rcond=None)[0] for values in (model, force))
     assert np.linalg.norm(found - true) < accuracy * np.linalg.norm(true)
+
+
+@pytest.mark.parametrize(("rate", "count"), [(60.0, 400), (60.0, 3000), (500.0, 3000)])
+def test_the_noise_of_an_encoder(rate: float, count: int) -> None:
+    """Estimated from what the filter of the displacement removes: with few samples in a period a fifth of it."""
+    time = np.arange(count) / rate
+    motion = 2e-3 * np.sin(2.0 * np.pi * 4.3 * time) + 1e-3 * np.sin(2.0 * np.pi * 1.1 * time)
+    found = [
+        encoder_noise(experiment_of(it.Record(time, motion + noise, np.gradient(motion))))
+        for noise in 5e-7 * np.random.default_rng(5).standard_normal((24, count))
+    ]
+    assert np.median(found) == pytest.approx(5e-7, rel=0.03)

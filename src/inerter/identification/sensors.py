@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 
 from inerter.identification.experiment import Experiment, add_encoder_noise
 from inerter.identification.problem import FitProblem
+from inerter.records.filtering import gain
 from inerter.records.periods import period_of
 from inerter.records.smoothing import resolution
 
 Matrix = NDArray[np.float64]
 _DRAWS = 12
-_BLOCKS = 40
+_BLOCKS, _LONG = 40, 64  # of time, at most; samples of each, at least
+_LINES = 1000  # of a spectrum over which a gain is averaged
 _HARMONICS = 60  # of a periodic motion, at most
 _ALIKE = 5.0  # r.m.s. errors of the smoothed displacement within which a motion is periodic
 
@@ -100,12 +102,19 @@ def encoder_noise(experiment: Experiment) -> float:
     if record.displacement_noise is not None:
         return record.displacement_noise
     taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
-    return taken / math.sqrt(1.0 - passed_share(experiment))
+    return taken / math.sqrt(float(np.mean((1.0 - _gains(experiment)) ** 2)))
 
 
 def passed_share(experiment: Experiment) -> float:
     """Share of the variance of white errors of the displacement that the smoothed motion has."""
-    return min(2.0 * experiment.motion.bandwidth * experiment.record.interval, 0.8)
+    return float(np.mean(_gains(experiment) ** 2))
+
+
+def _gains(experiment: Experiment) -> Matrix:
+    """The gain of the filter of the displacement over the frequencies of white errors."""
+    interval = experiment.record.interval
+    frequency = np.linspace(0.0, 0.5 / interval, _LINES, endpoint=False, dtype=np.float64)
+    return gain(frequency, interval, experiment.motion.bandwidth)
 
 
 def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: np.random.Generator) -> Matrix:
@@ -126,8 +135,12 @@ def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: n
 
 
 def _usual_rms(values: Matrix) -> float:
-    """R.m.s. of most blocks of time, without a few exceptional ones."""
-    return float(np.sqrt(np.median([np.var(block) for block in np.array_split(values, _BLOCKS)])))
+    """R.m.s. of most blocks of time, without a few exceptional ones.
+
+    The median of few samples' variances would be below their mean.
+    """
+    blocks = np.array_split(values, max(min(_BLOCKS, values.size // _LONG), 1))
+    return float(np.sqrt(np.median([np.var(block) for block in blocks])))
 
 
 def periodic_displacement(experiment: Experiment) -> Matrix:

@@ -224,10 +224,11 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
     problem, optimum = solution.problem, solution.optimum
     result, first = [], 0
     residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)
-    for n, (e, checked) in enumerate(zip(problem.experiments, solution.checked, strict=True)):
-        answer = problem.simulate(e, optimum.point)
-        assert answer is not None
-        force, run = answer
+    forces = problem.forces(optimum.point)
+    for n, (e, force, checked) in enumerate(zip(problem.experiments, forces, solution.checked, strict=True)):
+        simulated = problem.simulate(e, optimum.point)
+        assert simulated is not None
+        assert force is not None
         white = residuals[first : first + e.size][problem.whitenings[n].weight > 0.0]
         first += e.size
         gaps = {
@@ -236,7 +237,8 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
             if b.switch is not None and b.switches_by(GuardRole.ELONGATION)
         }
         openings = {
-            g: sum(event.element == g and event.after == loose for event in run.events) for g, loose in gaps.items()
+            g: sum(event.element == g and event.after == loose for event in simulated.run.events)
+            for g, loose in gaps.items()
         }
         result.append(
             RecordFit(

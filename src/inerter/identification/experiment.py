@@ -30,6 +30,7 @@ _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
 _AT_REST = 0.02  # of the largest velocity
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2
+_BARELY = 1.0  # largest pole times duration of a free motion that hardly changes over a record, as an offset does not
 
 
 class SimulationCount:
@@ -121,6 +122,26 @@ class Experiment:
         if not integration.status.ok:
             return None
         return trajectory_of(integration, None, self.record.source)
+
+
+def free_motions(experiment: Experiment, system: PiecewiseSystem, samples: int) -> Matrix:
+    """The free motions of a linear device (samples, motions), of which its unknown initial state sets free forces.
+
+    They decay from the first compared sample, before which they are zero. None if the record begins at rest, or the
+    device has friction or gaps, with which motions are not sums.
+    """
+    time = experiment.record.interval * np.arange(samples, dtype=np.float64)
+    if experiment.kept[0] or system.nonlinear:
+        return np.zeros((samples, 0))
+    state = initial_state(system, experiment.table.value[0], "rest")
+    n = system.order
+    rates = event_driven.start(system, _truncate(experiment.table, 1), state).mode(np.zeros(0, dtype=np.int64))[:n, :n]
+    poles = np.linalg.eigvals(rates)
+    poles = poles[(poles.imag >= 0.0) & (np.abs(poles) * experiment.record.duration > _BARELY)]
+    first = int(np.argmax(experiment.kept))
+    free = np.zeros((samples, poles.size), dtype=complex)
+    free[first:] = np.exp(np.outer(time[: samples - first], np.minimum(poles.real, 0.0) + 1j * poles.imag))
+    return np.hstack([free.real, free.imag[:, poles.imag > 0.0]])
 
 
 def experiment_of(record: Record, bandwidth: float | None = None, lead: float | None = None) -> Experiment:

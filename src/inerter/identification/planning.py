@@ -112,10 +112,10 @@ def _possible_motions(solution: SolvedFit) -> Iterator[PlannedMotion]:
             if any(e is None for e in experiments):
                 continue
             other = replace(problem, experiments=[e for e in experiments if e is not None])
-            forces = other.forces(optimum.point)
-            if any(f is None for f in forces) or not (present or _within_force_range(solution, forces, largest)):
+            simulated = [other.simulate(e, optimum.point) for e in other.experiments]
+            known = [s.force for s in simulated if s is not None]
+            if len(known) < len(simulated) or not (present or _within_force_range(solution, known, largest)):
                 break  # a larger amplitude is no easier
-            known = [f for f in forces if f is not None]
             other.experiments = [
                 replace(e, record=replace(e.record, force=f)) for e, f in zip(other.experiments, known, strict=True)
             ]
@@ -133,12 +133,10 @@ def _possible_motions(solution: SolvedFit) -> Iterator[PlannedMotion]:
             yield PlannedMotion(larger, faster, np.sqrt(np.maximum(np.diag(covariance), 0.0) * share))
 
 
-def _within_force_range(solution: SolvedFit, forces: list[Matrix | None], largest: float) -> bool:
+def _within_force_range(solution: SolvedFit, forces: Sequence[Matrix], largest: float) -> bool:
     """Whether each force is within the range of its load cell."""
     return all(
-        f is not None
-        and float(np.abs(f).max())
-        <= (_WITHOUT * largest if e.record.force_range is None else _ROOM * e.record.force_range)
+        float(np.abs(f).max()) <= (_WITHOUT * largest if e.record.force_range is None else _ROOM * e.record.force_range)
         for f, e in zip(forces, solution.problem.experiments, strict=True)
     )
 

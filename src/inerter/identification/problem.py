@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError
-from inerter.identification.experiment import Experiment, SimulationCount, load_cell_output
+from inerter.identification.experiment import Experiment, SimulationCount, free_motions, load_cell_output
 from inerter.identification.hypotheses import Hypothesis, read_by_load_cell
 from inerter.identification.models import on_rig
 from inerter.identification.noise import Whitening
@@ -28,6 +29,14 @@ Matrix = NDArray[np.float64]
 NoiseSpectrum = Callable[[Network], Matrix]
 _FEWEST = 100  # samples that are compared
 FAILED = 1e3  # whitened residual of a simulation that fails
+
+
+class SimulatedRecord(NamedTuple):
+    """A record as a device gives it, from rest."""
+
+    force: Matrix  # (samples,) [N] of the load cell
+    run: Trajectory
+    free: Matrix  # (samples, motions) free motions, for an initial state that the record does not show
 
 
 @dataclass(eq=False)
@@ -72,25 +81,38 @@ class FitProblem:
         return piecewise(on_rig(_label_elements(self.rig), record.force_bandwidth).with_values(values))
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
-        """Load cell forces of each record up to the horizon; None where the simulation fails."""
-        answers = (self.simulate(e, coordinates) for e in self.experiments)
-        return [None if simulate is None else simulate[0] for simulate in answers]
+        """Load cell forces of each record up to the horizon, with the free motion that fits best; None on failure."""
+        found: list[Matrix | None] = []
+        for n, e in enumerate(self.experiments):
+            simulated = self.simulate(e, coordinates)
+            if simulated is None or not simulated.free.shape[1]:
+                found.append(None if simulated is None else simulated.force)
+                continue
+            w, (force, _, free) = self.whitenings[n], simulated
+            white, columns = w(e.record.force[: force.size] - force), self._nuisances(w, free)
+            found.append(force + free @ _least_squares(columns, white)[: free.shape[1]])
+        return found
 
-    def simulate(self, experiment: Experiment, coordinates: Matrix) -> tuple[Matrix, Trajectory] | None:
-        """Load cell force in one record, and the motion of the device; None where the simulation fails."""
+    def simulate(self, experiment: Experiment, coordinates: Matrix) -> SimulatedRecord | None:
+        """One record as the device gives it from rest; None where the simulation fails."""
         e, values = experiment, self.space.values_by_name(coordinates)
         for hypothesis in self.assumed:
             e = hypothesis.change_motion(e, values)
         system = self.system(coordinates, e.record)
         run = None if system is None else e.run(system, None if self.horizon == 1.0 else self.samples(experiment))
-        if run is None:
+        if run is None or system is None:
             return None
         force = run[load_cell_output(e.record)]
         if e.record.fixture_mass is not None:
             force = force + e.record.fixture_mass * read_by_load_cell(e.motion.acceleration[: force.size], e)
         for hypothesis in self.assumed:
             force = hypothesis.read(force, e, values)
-        return force, run
+        return SimulatedRecord(force, run, free_motions(experiment, system, force.size))
+
+    def _nuisances(self, whitening: Whitening, free: Matrix) -> Matrix:
+        """Whitened free motions, and the offset, where it is free."""
+        columns = whitening(free) if free.shape[1] else free
+        return np.column_stack([columns, whitening.of_offset(free.shape[0])]) if self.offset else columns
 
     def samples(self, experiment: Experiment) -> int:
         """Number of samples of a record up to the horizon."""
@@ -101,18 +123,14 @@ class FitProblem:
     def residual(self, coordinates: Matrix) -> Matrix:
         """Whitened residuals of all records, one after the other."""
         parts = []
-        for e, w, force in zip(
-            self.experiments, self._whitenings_at(coordinates), self.forces(coordinates), strict=True
-        ):
-            size = self.samples(e)
-            if force is None:
-                parts.append(np.where(w.weight[:size] > 0.0, FAILED, 0.0))
+        for e, w in zip(self.experiments, self._whitenings_at(coordinates), strict=True):
+            simulated = self.simulate(e, coordinates)
+            if simulated is None:
+                parts.append(np.where(w.weight[: self.samples(e)] > 0.0, FAILED, 0.0))
                 continue
-            white = w(force - e.record.force[:size])
-            if self.offset:
-                column = w.of_offset(size)
-                white = white - column * (column @ white / max(float(column @ column), 1e-300))
-            parts.append(white)
+            force, _, free = simulated
+            white, columns = w(force - e.record.force[: force.size]), self._nuisances(w, free)
+            parts.append(white - columns @ _least_squares(columns, white))
         return np.concatenate(parts)
 
     def spectra_at(self, coordinates: Matrix) -> list[Matrix]:
@@ -159,6 +177,13 @@ class FitProblem:
             column, white = w.of_offset(size), w(e.record.force[:size] - force)
             result.append(float(column @ white / max(float(column @ column), 1e-300)))
         return result
+
+
+def _least_squares(columns: Matrix, values: Matrix) -> Matrix:
+    """The factors of columns whose sum is nearest to values."""
+    if columns.shape[1] == 1:
+        return np.array([columns[:, 0] @ values / max(float(columns[:, 0] @ columns[:, 0]), 1e-300)])
+    return np.asarray(np.linalg.lstsq(columns, values, rcond=1e-10)[0])
 
 
 def map_problems(

@@ -155,12 +155,15 @@ def _search_thoroughly(
 
 
 def _without_transients(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:
-    """Discard the start of records that begin in motion, as long as the unknown initial state of the device matters."""
+    """Discard the start of records that begin in motion, as long as the unknown initial state of the device matters.
+
+    Of a linear device, free motions from any state are fitted instead.
+    """
     result, leads = [], []
     for e in problem.experiments:
         system = problem.system(point, e.record)
         first = int(np.argmax(e.kept))
-        if lead is None and first > 0 and system is not None:
+        if lead is None and first > 0 and system is not None and system.nonlinear:
             kept = e.kept.copy()
             first = min(max(first, transient_samples(e, system, e.noise)), e.size // 2)
             kept[:first] = False

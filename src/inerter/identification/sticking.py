@@ -107,9 +107,9 @@ def _largest_held_force(problem: FitProblem, point: Matrix, i: int) -> float | N
     name, largest = problem.space.names[i], 0.0
     for e in problem.experiments:
         answer = problem.simulate(e, point)
-        if answer is None or any(event.element == name for event in answer[1].events):
+        if answer is None or any(event.element == name for event in answer.run.events):
             return None
-        largest = max(largest, float(np.abs(answer[1][force_of(name)]).max()))
+        largest = max(largest, float(np.abs(answer.run[force_of(name)]).max()))
     return largest
 
 

@@ -89,6 +89,7 @@ BAD = {
     "an empty text": (text(""), {}, "empty file; expected a header"),
     "blank lines": (text("\n \n\n"), {}, "empty file"),
     "an empty TDMS": (text("", "a.tdms"), {}, "the suffix indicates TDMS, but the first bytes indicate an empty file"),
+    "a blank TDMS": (text("\0" * 200, "a.tdms"), {}, "the first bytes indicate a blank file"),
     "an empty MDF": (text("", "a.mf4"), {}, "an empty file"),
     "an empty MAT": (text("", "a.mat"), {}, "an empty file"),
     "text called TDMS": (renamed(good, "a.tdms"), {}, "the first bytes indicate another format"),

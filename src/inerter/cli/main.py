@@ -461,7 +461,8 @@ def docs(site: Path | None = None, /) -> None:
     """
     if site is None:
         print(
-            "The documentation is the folder docs/ of the sources of inerter. To build its site, in the sources:\n"
+            "The documentation is the folder docs/ of the sources of inerter. To build its\n"
+            "site, in the sources:\n"
             '  pip install ".[site]" && sphinx-build docs site && inerter docs site'
         )
         return

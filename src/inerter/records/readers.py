@@ -145,7 +145,8 @@ def _opener(name: str, source: str) -> Opener:
         raise RecordError(f"{source} cannot be opened: {problem.strerror}.") from None
     found, advice = next(((what, to) for magic, what, to in _MAGIC if head.startswith(magic)), ("text", ""))
     if found == "text" and expected != "text":
-        found = "an empty file" if not head.strip(b" \0\r\n\t") else "another format"
+        blank = "an empty file" if not head else "a blank file"
+        found = blank if not head.strip(b" \0\r\n\t") else "another format"
         advice = "Check that the file is complete and its suffix correct."
     if found != expected and not (expected == "MAT" and found == "HDF5"):
         raise RecordError(f"{source}: the suffix indicates {expected}, but the first bytes indicate {found}. {advice}")

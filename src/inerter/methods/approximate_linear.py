@@ -309,6 +309,18 @@ class ApproximateLinear(FormerMethodNames):
                 largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows
             )
             changes = sum(abs(other - value) for other, *_ in others)
+            if loose:
+                every_second = (
+                    largest_gain(
+                        rest[:, 0, i::2],
+                        None if lines is None else lines[:, i::2],
+                        known,
+                        drive.omega[i::2],
+                        windows[-1],
+                    )
+                    for i in (0, 1)
+                )
+                changes += max(abs(other - others[-1][0]) for other, *_ in every_second)
             smoothed = (ErrorSource("smoothing", changes / max(value, 1e-300)),)
             value, scatter = weight * value, weight * scatter
             peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in found)

@@ -223,7 +223,7 @@ def like_a_car(title: str, *given: Any, **attributes: Any) -> type:
 @pytest.mark.parametrize(
     ("forces", "words"),
     [
-        ({"pull": "kg"}, r"Pulled has a force 'pull' in kg; a signal is in m, N, N m\."),
+        ({"pull": "kg"}, r"Pulled has a force 'pull' in kg; a signal is in m, N, N m, m/s\^2\."),
         ({"sprung_force": "N m"}, r"Pulled has 'sprung_force' in N m, and another vehicle in N\."),
     ],
 )

@@ -305,10 +305,8 @@ class ApproximateLinear(FormerMethodNames):
         if definition.is_peak:
             weight = float(weights[0])
             windows = [self._window(drive.omega, times) for times in ((1.0, 2.0, 0.0) if loose else (1.0, 2.0))]
-            (value, scatter, found), *others = (
-                largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows
-            )
-            changes = sum(abs(other - value) for other, *_ in others)
+            best, *others = (largest_gain(rest[:, 0], lines, known, drive.omega, window) for window in windows)
+            changes = sum(abs(other.gain - best.gain) for other in others)
             if loose:
                 every_second = (
                     largest_gain(
@@ -320,10 +318,13 @@ class ApproximateLinear(FormerMethodNames):
                     )
                     for i in (0, 1)
                 )
-                changes += max(abs(other - others[-1][0]) for other, *_ in every_second)
-            smoothed = (ErrorSource("smoothing", changes / max(value, 1e-300)),)
-            value, scatter = weight * value, weight * scatter
-            peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in found)
+                changes += max(abs(other.gain - others[-1].gain) for other in every_second)
+            smoothed = (
+                ErrorSource("smoothing", changes / max(best.gain, 1e-300)),
+                ErrorSource("band below the lowest frequency", best.below),
+            )
+            value, scatter = weight * best.gain, weight * best.deviations
+            peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in best.peaks)
         else:
             sums = drive.omega[0] / np.pi * rest.sum(axis=2)  # both signs of the frequency
             squares = sums.mean(axis=0) + (above if known is None else known.norms**2)

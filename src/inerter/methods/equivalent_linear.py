@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, LinearSystemError, MechanismError
@@ -18,6 +19,7 @@ from inerter.methods.equivalent import Equivalent, equivalent, slipping_freely
 from inerter.methods.equivalent_damper import GAUSSIAN
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.norms.h2 import h2
+from inerter.norms.response import frequency_response
 from inerter.norms.stability import balance
 from inerter.systems.descriptor import close, describe
 from inerter.systems.input_paths import inputs_of
@@ -28,7 +30,8 @@ from inerter.systems.piecewise import PiecewiseSystem
 from inerter.vehicle.mechanism import Mechanism
 
 Array = NDArray[np.float64]
-_STUCK = 1e4  # times a typical damper is as good as stuck: more would only cost digits
+_STUCK = 1e6  # times a typical damper is as good as stuck: more would only cost digits
+_DECADES, _ABOVE = 4.0, 4001  # above a frequency, and frequencies there
 _PEAKED = 1.6  # error of a mean square by lines without the peaks of a road, see `ModalShares.over_lines` and 0011
 _DRIFT = 1e-3  # a motion that changes by less over the time asked about is a drift, which `h2` judges
 
@@ -85,10 +88,18 @@ class EquivalentLinearModel:
         """The mechanism with dampers that is driven."""
         return self.problem.definition.drive.excited_mechanism(self.parts.mechanism)
 
+    def sticks(self, speeds: Array) -> bool:
+        """Whether a friction is as good as stuck: over long times its damper creeps, which the friction does not."""
+        return bool(np.any(speeds[list(self.parts.numbers)] <= self._slowest))
+
+    @property
+    def _slowest(self) -> Array:
+        """R.m.s. velocities [m/s] below which frictions count as stuck."""
+        return np.asarray(GAUSSIAN.force(np.array(self.parts.forces, dtype=float)) / (_STUCK * self.parts.scale))
+
     def _dampers(self, speeds: Array) -> dict[str, float]:
         frictions = np.array(self.parts.forces, dtype=float)
-        slowest = GAUSSIAN.force(frictions) / (_STUCK * self.parts.scale)
-        dampings = GAUSSIAN.damping(frictions, np.maximum(speeds[list(self.parts.numbers)], slowest))
+        dampings = GAUSSIAN.damping(frictions, np.maximum(speeds[list(self.parts.numbers)], self._slowest))
         return dict(zip(self.parts.dampers, dampings.tolist(), strict=True))
 
     def unlike(self, speeds: Array, norms: Array) -> float:
@@ -113,6 +124,14 @@ def equivalent_linear_model(
         return EquivalentLinearModel(linear_problem(parts.mechanism, definition, conventions), parts)
     except (MechanismError, LinearSystemError):
         return None
+
+
+def squares_above(system: LinearSystem, omega: float) -> Array:
+    """Part of the squared H2 norms (outputs,) of a stable system that is above `omega` [rad/s]."""
+    beyond = omega * np.logspace(0.0, _DECADES, _ABOVE)
+    density = np.sum(np.abs(frequency_response(system, beyond)) ** 2, axis=2).T * beyond
+    end = density[:, -1]  # beyond the last frequency the squares fall as 1 / omega^2
+    return np.asarray((scipy.integrate.trapezoid(density, np.log(beyond), axis=1) + end) / np.pi)
 
 
 @dataclass(frozen=True, eq=False)

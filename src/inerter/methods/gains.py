@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, Status, StatusKind
@@ -17,6 +16,7 @@ from inerter.methods.equivalent_linear import (
     lower_peaks,
     modal_shares,
     relative_change,
+    squares_above,
     travels_with_play,
 )
 from inerter.methods.excitation import ExcitedInputs
@@ -33,7 +33,7 @@ from inerter.systems.piecewise import PiecewiseSystem
 Array = NDArray[np.float64]
 _UNSEEN = 5e-4  # of a mean square that harmonics may miss without a doubt
 _REPEATS = 1e-4  # change of the state over a period, relative to its size, that leaves an estimate alone
-_DECADES, _ABOVE = 4.0, 4001  # above the highest harmonic, and frequencies there
+_REFINED = 2  # times that a maximum is searched on a grid, each 64 times finer
 _COMPARED = 2  # realisations that are simulated at twice their size
 
 
@@ -48,10 +48,12 @@ class LinearModel:
     unlike: float  # by what part of a mean square another motion would make it another design
     peaked: float  # share of a mean square by which harmonics are off that have lower peaks than a random motion
     pole: complex  # of the motion that outlasts the others
+    faster: LinearSystem  # the model if all frictions slip twice as fast
+    sticks: bool  # whether a friction sticks, in place of which a damper creeps over long times
 
     def squares(self, omega: Array) -> Array:
         """Squared gains (outputs, frequencies) from the road's velocity or the force."""
-        return np.asarray(np.abs(frequency_response(self.system, omega)[:, :, 0].T) ** 2)
+        return _squares(self.system, omega)
 
     def unseen(self, gains: Array, omega: Array) -> float:
         """Share of a mean square between the harmonics of the squared `gains` (outputs, harmonics).
@@ -64,28 +66,41 @@ class LinearModel:
         misfit = float(np.max(np.abs(self.squares(omega).sum(axis=1) / total - 1.0)))
         return float(self.missed * min(misfit + self.unlike, 1.0))
 
+    def unsure_below(self, rest: Array, omega: Array) -> float:
+        """Share of what the model adds to a gain below the harmonics that is not sure, as `rest` was not its own.
+
+        `rest` (harmonics,) is what the squared gain of the first output has besides the model's.
+        """
+        lowest = omega[:2]
+        own, faster = self.squares(lowest)[0], _squares(self.faster, lowest)[0]
+        return float(min(np.max(np.abs(faster - own) / own) + abs(rest[0]) / own[0], 1.0))
+
     def above(self, gains: Array, omega: Array) -> tuple[float, Array]:
         """Mean square above the harmonics, by this model, over that of the squared `gains` (outputs, harmonics).
 
         Also the squares there (outputs,), in the units of squared norms.
         """
-        beyond = (omega[-1] + 0.5 * omega[0]) * np.logspace(0.0, _DECADES, _ABOVE)
-        density = self.squares(beyond) * beyond
-        end = density[:, -1]  # beyond the last frequency the squares fall as 1 / omega^2
-        squares = (scipy.integrate.trapezoid(density, np.log(beyond), axis=1) + end) / np.pi
+        squares = squares_above(self.system, float(omega[-1] + 0.5 * omega[0]))
         inside = omega[0] / np.pi * gains.sum(axis=1)
-        return float(np.max(squares / np.maximum(inside, 1e-300))), np.asarray(squares)
+        return float(np.max(squares / np.maximum(inside, 1e-300))), squares
 
 
 def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) -> LinearModel:
     """The model for a motion with these r.m.s. velocities across the frictions that repeats after `period` [s]."""
     system = linear.system(speeds)
     whole = h2(system, linear.problem.pade_order)
+    faster, sticks = linear.system(2.0 * speeds), linear.sticks(speeds)
     if not whole.status.ok:
-        return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, math.inf, 0j)
+        return LinearModel(system, whole.outputs, whole.status, math.inf, math.inf, math.inf, 0j, faster, sticks)
     modes, unlike = modal_shares(system, whole.outputs), linear.unlike(speeds, whole.outputs)
     left, pole = modes.remaining(period)
-    return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, modes.lower_peaks(period, unlike), pole)
+    peaked = modes.lower_peaks(period, unlike)
+    return LinearModel(system, whole.outputs, whole.status, 2.0 * left, unlike, peaked, pole, faster, sticks)
+
+
+def _squares(system: LinearSystem, omega: Array) -> Array:
+    """Squared gains (outputs, frequencies) from the first input of a system."""
+    return np.asarray(np.abs(frequency_response(system, omega)[:, :, 0].T) ** 2)
 
 
 @dataclass(eq=False)
@@ -183,13 +198,23 @@ class Runs:
             self.over_lines.append(float(np.max(1.0 / number_of_lines(np.array(travels)))))
 
 
+@dataclass(frozen=True, eq=False)
+class LargestGain:
+    """The largest gain, with the local maxima, the highest first."""
+
+    gain: float
+    deviations: Array  # of each realisation (realisations,)
+    peaks: tuple[GainPeak, ...]
+    below: float  # what it may be off, relative to it, as nothing below the lowest harmonic is simulated
+
+
 def largest_gain(
     rest: Array, lines: Array | None, known: LinearModel | None, omega: Array, window: Array
-) -> tuple[float, Array, tuple[GainPeak, ...]]:
-    """The largest gain, its deviation in each realisation, and the local maxima, the highest first.
+) -> LargestGain:
+    """The largest gain of squared gains less those of the linear model, `rest` (realisations, harmonics).
 
-    Squared gains less those of the linear model, `rest` (realisations, harmonics), are smoothed; those of the model,
-    `lines`, are not, and between harmonics too they are known.
+    They are smoothed; the squared gains of the model, `lines`, are not, and between harmonics too they are known, as
+    below the lowest one unless a friction sticks.
     """
     share = np.convolve(np.ones(omega.size), window, "same")
     smooth = np.array([np.convolve(row, window, "same") for row in rest]) / share
@@ -201,13 +226,23 @@ def largest_gain(
         linear = 0.0 if known is None else known.squares(at)[0]
         return np.asarray(np.maximum(np.interp(at, omega, mean) + linear, 0.0))
 
-    peaks = [_refine_maximum(between, omega, i) for i in _summits(total, window.size)]
-    if known is not None:  # whose gain is known below the lowest harmonic too
-        peaks.append(_refine_maximum(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1))
-    found = sorted(peaks, key=lambda peak: -peak.gain)
+    found = sorted((_refine_maximum(between, omega, i) for i in _summits(total, window.size)), key=_by_height)
+    inside, below = found[0], 0.0
+    if known is not None and not known.sticks:
+        lowest = _refine_maximum(between, np.array([0.0, 0.5 * omega[0], omega[0]]), 1)
+        found = sorted([*found, lowest], key=_by_height)
+        if lowest.gain > inside.gain:
+            below = (1.0 - inside.gain / lowest.gain) * known.unsure_below(mean, omega)
+    elif inside.omega < omega[1]:  # to zero it may rise by no more than it fell to the next harmonic
+        first, second = np.sqrt(between(omega[:2]))
+        below = float(max(1.0 - second / max(first, 1e-300), 0.0))
     best = found[0]
-    deviation = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
-    return best.gain, deviation / (2.0 * max(best.gain, 1e-300)), tuple(found)
+    deviations = np.array([np.interp(best.omega, omega, row) for row in smooth - mean])
+    return LargestGain(best.gain, deviations / (2.0 * max(best.gain, 1e-300)), tuple(found), below)
+
+
+def _by_height(peak: GainPeak) -> float:
+    return -peak.gain
 
 
 def _summits(values: Array, reach: int) -> list[int]:
@@ -218,7 +253,12 @@ def _summits(values: Array, reach: int) -> list[int]:
 
 def _refine_maximum(squares: Callable[[Array], Array], omega: Array, i: int) -> GainPeak:
     """The maximum between the neighbours of a harmonic."""
-    at = np.linspace(omega[max(i - 1, 0)], omega[min(i + 1, omega.size - 1)], 129)
-    values = squares(at)
-    best = int(np.argmax(values))
-    return GainPeak(float(at[best]), float(np.sqrt(values[best])))
+    at = omega[[max(i - 1, 0), min(i + 1, omega.size - 1)]]
+    for _ in range(_REFINED):
+        low, high = at[0], at[-1]
+        at = np.linspace(low, high, 129)
+        values = squares(at)
+        best = int(np.argmax(values))
+        found = GainPeak(float(at[best]), float(np.sqrt(values[best])))
+        at = at[max(best - 1, 0) : best + 2]
+    return found

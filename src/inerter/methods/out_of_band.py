@@ -23,6 +23,7 @@ from inerter.methods.equivalent_linear import (
     lower_peaks,
     modal_shares,
     relative_change,
+    squares_above,
     travels_with_play,
     with_velocities,
 )
@@ -60,8 +61,10 @@ _MOST_PEAKED_BY_PLAY = 0.015  # ... with backlash, where the roads needed for th
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _IMAGES_WITHIN = 1e-8  # of the largest response to images, which are a per cent of any line, or less
+_ROUNDING = 1e-12  # of the mean square of an index, within which an output is at rest
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
 _UNLIKE = "no equivalent linear model of backlash: nothing is added for the road outside 0.1 to 1000 Hz"
+_LOOSE = "no equivalent linear model of backlash: above 1000 Hz gaps count as closed, below 0.1 Hz nothing is added"
 _STEPPED = 2e-6  # relative error of a value by the time step
 _PEAKS = 4.0  # the largest of a random motion over its r.m.s. value
 _FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
@@ -215,7 +218,8 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     lines = _lines_of(excitation)
     gains, sampled = _squared_gains(design, speeds)
     inside, seen = lines.power @ gains, lines.power @ sampled
-    added = (design.definition.drive.amplitude_density * norms) ** 2 - seen
+    whole_band = (design.definition.drive.amplitude_density * norms) ** 2
+    added = whole_band - seen
     modes = modal_shares(system, norms)
     (left, pole), (at_last, _) = modes.remaining(excitation.period), modes.remaining(design.longest)
     change = linear.unlike(speeds, norms)
@@ -224,13 +228,19 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
         share = max(float(np.max(np.abs(added) / np.maximum(power[:count] + added, 1e-300))) - 2.0 * left, 0.0)
     misfit = relative_change(inside, power[:count])
     unlike = min(misfit + change, 1.0)  # once the lines tell more
-    unseen, within_reach = 2.0 * left, True
+    parts = design.weights**2 * power[:count]
+    moving = parts > _ROUNDING * parts.max()  # others are at rest but for rounding, as on one side of a symmetry
+    larger = float(np.max(whole_band[moving] / power[:count][moving], initial=1.0))  # the model's motion
+    unseen, within_reach = 2.0 * left * larger, True
     if unseen > _UNSEEN:
-        unseen, within_reach = unseen * unlike, 2.0 * at_last * unlike <= _UNSEEN
+        far = 1.0 if design.play else unlike  # a motion over gaps may have other resonances and equal mean squares
+        unseen, within_reach = unseen * far, 2.0 * at_last * larger * far <= _UNSEEN
     if design.play:  # the model closes gaps, which may damp what is not damped while they are open
         unseen = max(unseen, _left_over(found))
     if design.play and unseen > _UNSEEN:
-        return OutOfBandContribution(np.zeros(count), unseen, beyond=share, peaked=peaked, notes=(_UNLIKE,))
+        above = design.definition.drive.amplitude_density**2 * squares_above(system, float(lines.omega[-1]))
+        share = max(share, float(np.max(above / np.maximum(power[:count], 1e-300))))
+        return OutOfBandContribution(above, unseen, beyond=share, peaked=peaked, notes=(_LOOSE,))
     if unseen > _LOST:
         return OutOfBandContribution(
             np.full(count, np.nan), unseen, share, peaked, within_reach, _almost_undamped(pole, design.longest)

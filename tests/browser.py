@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -184,6 +185,28 @@ def free_port() -> int:
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         return int(listener.getsockname()[1])
+
+
+class HeldRequests:
+    """Requests of a window that match a pattern: held back as `routes` until `end`, after which others pass.
+
+    The pattern stays: once a window has none, it lets go what is held.
+    """
+
+    def __init__(self, window: Visitor, pattern: str | re.Pattern[str]) -> None:
+        self.routes: list[Any] = []
+        self._ended = False
+        window.page.route(pattern, lambda route: self._hold(route))  # noqa: PLW0108 -- a method cannot be marked
+
+    def end(self) -> None:
+        """Hold no more requests back."""
+        self._ended = True
+
+    def _hold(self, route: Any) -> None:
+        if self._ended:
+            route.continue_()
+        else:
+            self.routes.append(route)
 
 
 def note_requests(window: Visitor) -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Served, Visitor, drop, wait_until
+from browser import HeldRequests, Served, Visitor, drop, wait_until
 from campaigns import sampled
 from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
@@ -48,12 +48,10 @@ NOTHING = {"numbers": [], "curves": 0, "texts": []}
 @contextmanager
 def held(visitor: Visitor, paths: str = "panel/") -> Iterator[list[Any]]:
     """Requests of these paths get no answer; in the end they are told that newer ones have come."""
-    waiting: list[Any] = []
-    pattern = re.compile(f".*/api/{paths}.*")
-    visitor.page.route(pattern, lambda route: waiting.append(route))  # noqa: PLW0108 -- a method of a list cannot be marked
-    yield waiting
-    visitor.page.unroute(pattern)
-    for route in waiting:
+    requests = HeldRequests(visitor, re.compile(f".*/api/{paths}.*"))
+    yield requests.routes
+    requests.end()
+    for route in requests.routes:
         route.fulfill(status=409, body=json.dumps({"sentence": "Out of date.", "outdated": True}))
 
 
@@ -130,16 +128,15 @@ def test_what_buttons_asked_goes_with_its_study(visitor: Visitor) -> None:
 def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visitor) -> None:
     page = visitor.page
     _opened(visitor, "seat")
-    waiting: list[Any] = []
-    page.route("**/api/panel/optimise", lambda route: waiting.append(route))  # noqa: PLW0108
+    held_back = HeldRequests(visitor, "**/api/panel/optimise")
     with page.expect_request("**/api/panel/optimise"):
         page.get_by_role("button", name="Find best").click()
     page.wait_for_timeout(200)
-    assert len(waiting) == 1
-    page.unroute("**/api/panel/optimise")
+    (late,) = held_back.routes
+    held_back.end()
     _opened(visitor, "train")
     with page.expect_response("**/api/panel/optimise"):
-        waiting[0].continue_()
+        late.continue_()
     page.evaluate(FRAMES)
     page.wait_for_timeout(500)
     page.wait_for_selector("#verdict[data-severity=open]")

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from browser import Served, Visitor, wait_until
+from browser import HeldRequests, Served, Visitor, wait_until
 from folders import EXAMPLES
 from numpy.typing import NDArray
 
@@ -176,16 +176,15 @@ def test_each_plot_is_cut_at_its_own_edges(visitor: Visitor) -> None:
 def test_numbers_that_are_not_current_are_not_saved(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
-    waiting: list[Any] = []
-    page.route("**/api/panel/response", lambda route: waiting.append(route))  # noqa: PLW0108
+    held_back = HeldRequests(visitor, "**/api/panel/response")
     page.get_by_role("button", name="Undo").focus()
     entry = page.locator(".amount > .entry").first
     entry.fill("119 kN/m")
     entry.press("Enter")
-    wait_until(lambda: len(waiting) > 0 or bool(page.wait_for_timeout(20)))
+    wait_until(lambda: len(held_back.routes) > 0 or bool(page.wait_for_timeout(20)))
     assert page.locator(".plot-tools .menu-body button").first.is_disabled()
-    page.unroute("**/api/panel/response")
-    for route in waiting:
+    held_back.end()
+    for route in held_back.routes:
         route.continue_()
     visitor.drawn()
     assert page.locator(".plot-tools .menu-body button").first.is_enabled()

@@ -345,7 +345,7 @@ test("a value has no more places than its error bound leaves", () => {
   ];
   assert.deepEqual(
     written.map(([value, places]) => placed(value, places)),
-    ["2.51", "500", "6.65·10⁻⁵", "−0.29000", "0", "4.5", "–"],
+    ["2.51", "500", "6.65·10⁻⁵", "−0.29", "0", "4.5", "–"],
   );
 });
 

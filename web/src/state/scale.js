@@ -88,7 +88,7 @@ export const valuesIn = (about, texts, at = {}) => Object.entries(texts).map(([n
  * @param {number | null | undefined} places */
 export function placed(number, places) {
   if (typeof number !== "number" || typeof places !== "number" || number === 0) return shown(number);
-  return aligned(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
+  return shown(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
 }
 
 /** A value and its error with as many places as the error tells, and no more than `most`: one digit of it, or two if

@@ -224,11 +224,10 @@ def _comparisons(solution: SolvedFit) -> tuple[RecordFit, ...]:
     problem, optimum = solution.problem, solution.optimum
     result, first = [], 0
     residuals, offsets = problem.residual(optimum.point), problem.offsets(optimum.point)
-    forces = problem.forces(optimum.point)
-    for n, (e, force, checked) in enumerate(zip(problem.experiments, forces, solution.checked, strict=True)):
+    for n, (e, checked) in enumerate(zip(problem.experiments, solution.checked, strict=True)):
         simulated = problem.simulate(e, optimum.point)
         assert simulated is not None
-        assert force is not None
+        force = problem.read_force(n, simulated)
         white = residuals[first : first + e.size][problem.whitenings[n].weight > 0.0]
         first += e.size
         gaps = {

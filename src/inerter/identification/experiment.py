@@ -127,8 +127,8 @@ class Experiment:
 def free_motions(experiment: Experiment, system: PiecewiseSystem, samples: int) -> Matrix:
     """The free motions of a linear device (samples, motions), of which its unknown initial state sets free forces.
 
-    They decay from the first compared sample, before which they are zero. None if the record begins at rest, or the
-    device has friction or gaps, with which motions are not sums.
+    They decay from the first compared sample, before which they are zero. There are none if the record begins at rest,
+    or the device has friction or gaps, with which motions are not sums.
     """
     time = experiment.record.interval * np.arange(samples, dtype=np.float64)
     if experiment.kept[0] or system.nonlinear:

@@ -82,16 +82,17 @@ class FitProblem:
 
     def forces(self, coordinates: Matrix) -> list[Matrix | None]:
         """Load cell forces of each record up to the horizon, with the free motion that fits best; None on failure."""
-        found: list[Matrix | None] = []
-        for n, e in enumerate(self.experiments):
-            simulated = self.simulate(e, coordinates)
-            if simulated is None or not simulated.free.shape[1]:
-                found.append(None if simulated is None else simulated.force)
-                continue
-            w, (force, _, free) = self.whitenings[n], simulated
-            white, columns = w(e.record.force[: force.size] - force), self._nuisances(w, free)
-            found.append(force + free @ _least_squares(columns, white)[: free.shape[1]])
-        return found
+        simulated = (self.simulate(e, coordinates) for e in self.experiments)
+        return [None if one is None else self.read_force(n, one) for n, one in enumerate(simulated)]
+
+    def read_force(self, number: int, simulated: SimulatedRecord) -> Matrix:
+        """Load cell force [N] of a record of this number, with the free motion that fits it best."""
+        force, _, free = simulated
+        if not free.shape[1]:
+            return force
+        e, w = self.experiments[number], self.whitenings[number]
+        white, columns = w(e.record.force[: force.size] - force), self._nuisances(w, free)
+        return np.asarray(force + free @ _least_squares(columns, white)[: free.shape[1]])
 
     def simulate(self, experiment: Experiment, coordinates: Matrix) -> SimulatedRecord | None:
         """One record as the device gives it from rest; None where the simulation fails."""

@@ -121,8 +121,9 @@ def vehicle_problems(table: VehicleTable) -> Iterator[Problem]:
 def inputs(table: VehicleTable) -> dict[str, str]:
     """Inputs that a signal may excite, with the unit of each; the default input first."""
     if table["model"] == MECHANISM:
-        ground = {} if all(map(is_angle, table["coordinates"].values())) else _GROUND
-        return {**({"road": "m"} if table["roads"] else {}), **forces_of(table), **ground, **forces_of(table)}
+        forces, has_mass = forces_of(table), not all(map(is_angle, table["coordinates"].values()))
+        ground = _GROUND if has_mass and GROUND_ACCELERATION not in forces else {}
+        return {**({"road": "m"} if table["roads"] else {}), **forces, **ground}
     kind = VEHICLES[table["model"]]
     return {kind.moved: "m", **kind.forces, **({} if kind is Rig else _GROUND)}
 

@@ -19,10 +19,7 @@ from inerter.vehicle.registry import VEHICLES
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
-IN_CONDITIONS, CONDITION = (
-    "in_conditions.",
-    "in_conditions.condition",
-)  # variables and dimension of results
+IN_CONDITIONS, CONDITION = "in_conditions.", "in_conditions.condition"  # variables and dimension of results
 
 
 @dataclass(frozen=True)

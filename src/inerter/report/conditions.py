@@ -19,14 +19,13 @@ from inerter.figures.labels import (
     layouts,
     one_method,
 )
-from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
+from inerter.files.study.conditions import CONDITION, IN_CONDITIONS, MOST_LISTED
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.files.study.sections import OVER
 from inerter.formatting import choose_scale, format_list, format_share
 from inerter.report.index_summary import is_compared
 from inerter.table import Cell, Column, Row, Table, columns
 
-_MOST_ON_TERMINALS = 6  # conditions, one by one
 OTHERS_AT = f"Values in each condition are in {SUMMARY} and {DATASET}."
 
 
@@ -50,7 +49,7 @@ def condition_tables(results: xr.Dataset) -> list[Table]:
 
 def brief_condition_tables(results: xr.Dataset) -> list[Table] | None:
     """Tables of the best and the worst condition of each layout, where there are many conditions; else None."""
-    if len(condition_names(results)) <= _MOST_ON_TERMINALS:
+    if len(condition_names(results)) <= MOST_LISTED:
         return None
     return [_extreme_table(one_method(results), index) for index in indices(results)]
 

@@ -14,7 +14,7 @@ from inerter.errors import StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.conditions import condition_labels
+from inerter.files.study.conditions import MOST_LISTED, condition_labels
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
@@ -36,22 +36,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _KEYS = (
-    *(
-        "index",
-        "layout",
-        "condition",
-        "method",
-        "better",
-        "value",
-        "unit",
-        "standard_error",
-        "low",
-        "high",
-        "error_bound",
-    ),
-    *("crossings", "status"),
+    *("index", "layout", "condition", "method", "better"),
+    *("value", "unit", "standard_error", "low", "high", "error_bound", "crossings", "status"),
 )
-_MOST_SHOWN = 6  # conditions, one by one
 _DOWN, _UP = 1e3, 1e2  # a stiffness, damping or inertance is tried so many times below and above its value
 
 
@@ -193,7 +180,7 @@ class Budgets(Task[BudgetAnswer]):
                 *(one.value, one.unit, one.standard_error, low, high, one.error_bound),
                 *(";".join(map(repr, one.crossings)), one.status_text),
             ]
-            is_shown = not one.condition or len(results.study.conditions) <= _MOST_SHOWN
+            is_shown = not one.condition or len(results.study.conditions) <= MOST_LISTED
             rows.append(Row(cells(*contents), status=one.doubt, remark=_remark(one), shown=is_shown))
         by = brief_words_of(results.answers[0].method)
         return Table(

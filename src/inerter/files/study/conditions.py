@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
 IN_CONDITIONS, CONDITION = "in_conditions.", "in_conditions.condition"  # variables and dimension of results
+MOST_LISTED = 6  # conditions, one by one
 
 
 @dataclass(frozen=True)

@@ -132,9 +132,12 @@ class Visitor:
         return str(self.page.input_value("#network-text"))
 
     def settled(self) -> None:
-        """Wait until every question that the page asked is answered."""
+        """Wait until every question that the page asked is answered.
+
+        By a boolean: an element that a script returns is kept by the browser, with the table that it was in.
+        """
         self.page.wait_for_function(
-            "() => !document.querySelector('[aria-busy=true]') && document.querySelector('td[data-index]')"
+            "() => !document.querySelector('[aria-busy=true]') && document.querySelector('td[data-index]') !== null"
         )
 
     def chosen(self) -> None:

@@ -254,6 +254,7 @@ def test_a_fit_that_is_withheld_offers_what_it_advises(visitor: Visitor, tmp_pat
     assert fit.locator("td:text-is('withheld')").count() == 3
     assert fit.get_by_role("button", name="Take the device").count() == 0
     assert fit.locator("form:has-text('Fixture mass') input").count() == 1
+    assert fit.locator("button.main").count() == 1
     fit.get_by_role("button", name="Fit the model elastic-friction").click()
     fit = _fits(visitor, 2)
     assert "elastic-friction" in fit.locator("b").first.inner_text()

@@ -93,7 +93,11 @@ def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     front = page.locator("form.begin", has_text="Trade-off front")
     front.locator("input[name=points]").fill("3")
     front.get_by_role("button", name="Begin").click()
-    page.get_by_role("button", name="Take this point").first.click()
+    take = page.get_by_role("button", name="Take this point").first
+    take.wait_for()
+    panel, plot = (page.locator(each).bounding_box() for each in ("#tab-panel", ".job .plot"))
+    assert plot["y"] + plot["height"] < panel["y"] + panel["height"]  # all of the front is seen
+    take.click()
     visitor.settled()
     assert stale.count() == 0  # a point of a front of J1 and J3 is one for J1
     page.fill("[id='entry vehicle.sprung_mass']", "330 kg")

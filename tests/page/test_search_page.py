@@ -58,6 +58,9 @@ def test_networks_of_a_search_are_taken_into_the_editor(served: Served, searchin
     for tab in ("history", "margins", "tolerance"):
         page.click(f"#tab-{tab}")
         page.locator("#tab-panel", has_text="The network of any is free: search for the best one first.").wait_for()
+    page.click("#tab-work")
+    page.locator("form.begin [name=layout]").wait_for()
+    assert page.evaluate("() => document.documentElement.scrollHeight === innerHeight")  # long panels scroll, not it
     page.get_by_text("Export", exact=True).click()
     page.locator("#export-menu", has_text="The network of any is free: search for the best one first.").wait_for()
     page.keyboard.press("Escape")
@@ -103,14 +106,14 @@ def test_networks_of_a_search_are_taken_into_the_editor(served: Served, searchin
     assert [row.get_attribute("data-network") for row in rows.all()] == [one["network"] for one in searched["ranking"]]
     for number in (3, 0):  # another network of the ranking comes in place of the first
         chosen = searched["ranking"][number]
-        rows.nth(number).get_by_role("button", name="Into the editor").click()
+        rows.nth(number).get_by_role("button", name="Take", exact=True).click()
         shows(chosen, {"J3": chosen["value"]})
     simplest = searched["frontier"][0]
     job_row.locator("circle.point").first.press("Enter")
     shows(simplest, {"J3": simplest["value"]})
     real = searched["real_inerters"][0]
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
-    job_row.get_by_label("Real inerters").get_by_role("button", name="Into the editor").first.click()
+    job_row.get_by_label("Real inerters").get_by_role("button", name="Take", exact=True).first.click()
     shows(real, {"J3": real["value"]})
 
 

@@ -206,7 +206,7 @@ export function percent(value, error) {
   if (value === null || value === undefined) return "–";
   if (error) return `${estimated(value, error).join(" ± ")} %`;
   const size = Math.abs(value);
-  return `${value < 0 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
+  return `${value < 0 && size >= 0.005 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
 }
 
 /** @param {{improvement_percent?: number | null, improvement_status?: string | null, tie?: boolean | null}} result */

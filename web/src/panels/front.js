@@ -123,8 +123,7 @@ export function FrontView({ about, indices: all, fronts: every, baseline, take, 
     <p class="quiet">${every.flatMap(({ layout, status, message }) => (message && isOk(status)
       ? [`${layout}: ${message}`] : [])).join(" ")} Lower left is better${symbols.length > 2
         ? `; in the plane of ${across} and ${up} a point may be above others, if it is better in the third index` : ""}.
-      Click a point to take it into the editor, or with the keyboard: left and right for the next point, up and down for
-      another front, K for the knee, Enter to take.</p>`}`;
+      Click a point to take it into the editor.</p>`}`;
 }
 
 /** Points of fronts over two of the indices; those of three do not lie on a line. @param {any} about

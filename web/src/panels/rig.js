@@ -99,8 +99,8 @@ function Causes({ store, api, result, main }) {
     ${causes.map(({ sentence, explained, remedy, offers }, number) => html`<li key=${sentence}>
       ${capital(sentence)}: explains ${Math.round(100 * explained)} % of the residual.
       ${remedy && html` <span class="quiet">${capital(remedy)}.</span>`}
-      ${offers.map((offer) => html`<${Offered} key=${offer.label} store=${store} api=${api} result=${result}
-        offer=${offer} main=${main && number === 0} />`)}</li>`)}</ol>`;
+      ${offers.map((offer, i) => html`<${Offered} key=${offer.label} store=${store} api=${api} result=${result}
+        offer=${offer} main=${main && number + i === 0} />`)}</li>`)}</ol>`;
 }
 
 /** A button that fits the same records again, as a fit advises.

@@ -225,7 +225,7 @@ function NetworkRow({ state, row, rank, written: { unit, factor }, compared, tak
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
     ${compared && html`<td class="number">${percent(part)}</td>`}
-    <td><button type="button" onClick=${() => take(row)}>Into the editor</button></td>
+    <td><button type="button" title="Take it into the editor" onClick=${() => take(row)}>Take</button></td>
   </tr>`;
 }
 

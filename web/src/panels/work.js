@@ -71,7 +71,9 @@ function Begin({ store, api, kind }) {
     const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
     const told = await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) });
     setTold(told);
-    if (!told) showNewest(".jobs .job");
+    if (told) return;
+    store.look({ tall: true });
+    showNewest(".jobs .job");
   })}>
     <h3>${kind.title}</h3>
     <p class="quiet">${kind.sentence}</p>

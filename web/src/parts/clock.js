@@ -35,7 +35,7 @@ export function Moving({ what, since = null }) {
 }
 
 const WORDS = { current: "current", coming: "coming", none: "no answer", lost: "no server" };
-const BEFORE = "; below are the numbers of before";
+const BEFORE = ", former values";
 
 /** Whether what stands below is the answer to what is asked now.
  * @param {{shown: import("../state/answers.js").Shown}} props */

@@ -235,7 +235,7 @@ def test_finished_study_resumes_without_work(finished: Finished) -> None:
 def test_folder_is_never_overwritten_unasked(finished: Finished) -> None:
     thesis = finished.folder / "thesis.txt"
     thesis.write_text("mine")
-    with pytest.raises(StudyError, match=r"not empty.*--resume.*--force"):
+    with pytest.raises(StudyError, match=r"holds results of inerter run \(journal.jsonl, results.nc, .*\)\. .*--resume.*--force"):
         finished.again()
     assert finished.again(force=True).computed == 12
     assert thesis.read_text() == "mine"
@@ -256,7 +256,7 @@ def test_journal_cut_before_its_first_line_begins_anew(finished: Finished, text:
 def test_folder_in_use_is_refused(finished: Finished) -> None:
     with open_results(WriteMode(finished.folder, "run", result_names(), resume=True)):
         for options in ({"force": True}, {"resume": True}, {}):
-            with pytest.raises(StudyError, match=r"another run is writing|is not empty"):
+            with pytest.raises(StudyError, match=r"another run is writing|holds results of"):
                 finished.again(**options)
 
 

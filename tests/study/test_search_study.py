@@ -130,7 +130,7 @@ def test_a_search_cut_short_resumes_to_the_same_bytes(study: Study, tmp_path: Pa
     assert (folder / "search.csv").read_bytes() == before
     assert search_study(study, folder, resume=True).computed == 0
     assert (folder / "search.csv").read_bytes() == before
-    with pytest.raises(StudyError, match=r"not empty.*--resume.*--force"):
+    with pytest.raises(StudyError, match=r"holds results of inerter search .*--resume.*--force"):
         search_study(study, folder)
 
 

@@ -98,7 +98,7 @@ def test_what_the_journal_has_is_not_run_again(tmp_path: Path) -> None:
 
 
 def test_a_folder_of_others_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(it.InerterError, match="not empty"):
+    with pytest.raises(it.InerterError, match="not results of inerter"):
         it.run_study(load_text(tmp_path, STUDY), tmp_path)
 
 

@@ -191,7 +191,11 @@ def _check(intent: WriteMode) -> None:
             raise StudyError(_not_ours(intent, commands))
         if not intent.resume and not intent.force:
             again = "Replace" if intent.resume is None else "Continue with --resume, replace"
-            raise StudyError(f"{folder}: is not empty. {again} the results with --force, or {_ELSEWHERE}.")
+            there = _name_list(sorted({name.partition("/")[0] for name in known.by(intent.by)}))
+            raise StudyError(
+                f"{folder}: holds results of inerter {intent.by} ({there}). "
+                f"{again} them with --force, or {_ELSEWHERE}."
+            )
         _check_files(intent, known)
     except OSError as error:
         raise StudyError(f"{folder}: cannot be read ({error.strerror}). Choose another folder with -o.") from None
@@ -233,7 +237,8 @@ def _not_ours(intent: WriteMode, commands: Iterable[str]) -> str:
             f"{folder}: --force replaces results, and nothing here is known as one: {unknown}. "
             "Choose another folder with -o, or move away what is there."
         )
-    return f"{folder}: is not empty, and holds no results. Choose another folder with -o."
+    there = sorted({*os.listdir(folder)} - {MARK}) or [MARK]
+    return f"{folder}: holds {_name_list(there)}, not results of inerter. Choose another folder with -o."
 
 
 def _kept_files_note(names: list[str]) -> str:

@@ -186,7 +186,7 @@ def test_run_writes_everything_and_prints_the_best(tmp_path: Path, capsys: pytes
 
 def test_reproduction_never_replaces_what_is_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "report.html").write_text("mine")
-    assert "holds report.html, not results of inerter" in fails(["reproduce", "wang-su-2008", "-o", str(tmp_path)], capsys)
+    assert "holds report.html, not results of" in fails(["reproduce", "wang-su-2008", "-o", str(tmp_path)], capsys)
     assert (tmp_path / "report.html").read_text() == "mine"
 
 

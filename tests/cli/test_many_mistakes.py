@@ -93,4 +93,4 @@ def test_many_values_beyond_reason_are_numbers_or_say_why_not(
 def no_drawing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures take most of the time; the campaign draws them."""
     monkeypatch.setattr("inerter.report.writing.draw_study", lambda data, folder: folder.mkdir())
-    monkeypatch.setattr("inerter.report.writing.write_report", lambda data, study, figures, path, *found: path.touch())
+    monkeypatch.setattr("inerter.report.writing.write_report", lambda contents, figures, path: path.touch())

@@ -112,7 +112,7 @@ def cheap(identified: IdentificationResult | None = None) -> Iterator[None]:
         change("inerter.report.writing.draw_layouts", drawn("networks.svg", "networks.png"))
         change(
             "inerter.report.writing.write_report",
-            lambda results, study, figures, path, *found: write_text(path, "page\n"),
+            lambda contents, figures, path: write_text(path, "page\n"),
         )
         change("inerter.cli.simulation.draw_simulation", drawn("simulation.svg", "simulation.png"))
         change("inerter.cli.identify.write_identification", page)

@@ -20,6 +20,7 @@ from inerter.figures.study import draw_study
 from inerter.files.study.loading import load_study
 from inerter.report.page import environment, report, write_report
 from inerter.report.problem_statement import index_rows
+from inerter.report.study_contents import StudyContents
 from inerter.table import Cell, Column, Row, Table, cells, columns
 from inerter.tasks.budgets import BudgetAnswer
 
@@ -38,7 +39,7 @@ def sweep_study():
 
 def test_the_answer_is_on_the_page(study, tmp_path):
     results = designs()
-    page = Page(report(results, study, tmp_path))
+    page = Page(report(StudyContents(results, study), tmp_path))
     best = results["value"].sel(index="J1").min().item()
     assert "S3 is 12.0 % better than S1 in ride comfort (J1)." in page.text
     assert f"{best:.4g} m/s²+12.0 %" in page.text
@@ -66,14 +67,14 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     results = judged(designs())
     asked = replace(study, evaluate=("norm", "expected-value"), indices=("J1",), settings={"force": 1e3})
     asked = replace(asked, elements={**study.elements, "f": it.Friction(10.0)})
-    text = Page(report(results, asked, tmp_path, [found, endless])).text.replace(SPACE, " ")
+    text = Page(report(StudyContents(results, asked, [found, endless]), tmp_path)).text.replace(SPACE, " ")
     assert "2.4447 ± 0.0098+6.00 ± 0.31 %" in text
     assert "up to 280.5 ± 6.6 N" in text
     assert "Friction f, S3, ride comfort: better for every f." in text
     assert "S2, J1 – equally good at 280.5 N and 900 N" in text
     assert "S3, J1 – better for every f" in text
     poor = replace(found, layout="S3", status="inaccurate", message="it sticks. Take expected-value")
-    doubtful = Page(report(results, asked, tmp_path, [found, poor])).text.replace(SPACE, " ")
+    doubtful = Page(report(StudyContents(results, asked, [found, poor]), tmp_path)).text.replace(SPACE, " ")
     assert "Not certain for friction f, S3, ride comfort: inaccurate: it sticks. Take expected-value." in doubtful
     assert "S3 is better than" not in doubtful
     assert "not certain: up to 280.5 ± 6.6 N" in doubtful
@@ -82,13 +83,13 @@ def test_methods_and_budgets_are_on_the_page(study, sweep_study, tmp_path):
     assert "The sinusoidal force of J5 has an amplitude of 1 kN." in text
     swept = judged(sweep())
     swept["improvement"].loc[{"layout": "S2", "index": "J1", "method": "expected-value"}] = [-4.0, -1.0, 1.0, 3.0, 6.0]
-    text = Page(report(swept, sweep_study, tmp_path)).text.replace(SPACE, " ")
+    text = Page(report(StudyContents(swept, sweep_study), tmp_path)).text.replace(SPACE, " ")
     assert re.search(r"J1: S2 and S1 are equally good at k = \d+ ± \d+ kN/m by simulation\.", text)
     assert "over k in kN/m, by simulation" in text
 
 
 def test_the_question_is_on_the_page_in_the_digits_of_the_study_file(study, tmp_path):
-    text = Page(report(designs(), study, tmp_path)).text
+    text = Page(report(StudyContents(designs(), study), tmp_path)).text
     for words in ("181.75 kg", "25 m/s (90 km/h)", "5 × 10⁻⁷ m³/cycle", "free, 100 N s/m to 100 kN s/m"):
         assert words in text
     for layout in study.layouts.values():
@@ -99,7 +100,7 @@ def test_the_question_is_on_the_page_in_the_digits_of_the_study_file(study, tmp_
 def test_what_is_filled_in_is_only_text(study, tmp_path, hostile):
     results = with_value(designs(), math.inf, f"failed: {hostile}", layout="S2", index="J1")
     results.attrs |= {"title": hostile, "notes": hostile}
-    source = report(results, study, tmp_path)
+    source = report(StudyContents(results, study), tmp_path)
     page = Page(source)
     assert hostile not in source
     assert page.text.count(hostile) == 5  # in the title of the page, its heading, the verdict, the status and the notes
@@ -111,7 +112,7 @@ def long_names(request, study, sweep_study, tmp_path_factory):
     """The source of a page with its figures, and their folder."""
     folder, results = tmp_path_factory.mktemp("figures"), request.param(LONG)
     draw_study(results, folder)
-    return report(results, study if "omega" in results else sweep_study, folder), folder
+    return report(StudyContents(results, study if "omega" in results else sweep_study), folder), folder
 
 
 def test_the_page_needs_no_other_file_and_names_each_thing_once(long_names):
@@ -151,10 +152,10 @@ def test_words_in_a_table_may_go_over_several_lines_and_a_last_column_of_words_i
 
 @pytest.mark.campaign
 def test_figures_that_were_not_drawn_are_left_out(study, tmp_path):
-    assert "<figure>" not in report(designs(), study, tmp_path)
+    assert "<figure>" not in report(StudyContents(designs(), study), tmp_path)
     draw_study(designs(), tmp_path)
     (tmp_path / "improvement.svg").unlink()
-    assert report(designs(), study, tmp_path).count("<figure>") == 3
+    assert report(StudyContents(designs(), study), tmp_path).count("<figure>") == 3
 
 
 @pytest.fixture(scope="module")
@@ -167,8 +168,8 @@ def figures(tmp_path_factory):
 
 @pytest.mark.campaign
 def test_the_same_results_give_the_same_page(study, figures, tmp_path):
-    first = write_report(designs(), study, figures, tmp_path / "1.html")
-    second = write_report(designs(), study, figures, tmp_path / "2.html")
+    first = write_report(StudyContents(designs(), study), figures, tmp_path / "1.html")
+    second = write_report(StudyContents(designs(), study), figures, tmp_path / "2.html")
     assert first.read_bytes() == second.read_bytes()
     for folder in (tmp_path, figures, EXAMPLES):
         assert str(folder) not in first.read_text(encoding="utf-8")
@@ -177,17 +178,17 @@ def test_the_same_results_give_the_same_page(study, figures, tmp_path):
 def test_values_that_are_not_ok_stand_with_their_sentence(study, sweep_study, tmp_path):
     status = "unstable: the design has no finite norm"
     results = with_value(designs(), math.inf, status, layout="S2", index="J3")
-    text = Page(report(results, study, tmp_path)).text
+    text = Page(report(StudyContents(results, study), tmp_path)).text
     assert "S2inf−inf %" in text
     assert f"S2 – {status}" in text
     results = with_value(sweep(), math.inf, status, layout="S2", index="J3", k=60e3)
-    text = Page(report(results, sweep_study, tmp_path)).text
+    text = Page(report(StudyContents(results, sweep_study), tmp_path)).text
     assert f"S2 at k = 60 kN/m: {status}" in text
 
 
 def test_a_design_for_one_index_is_shown_with_its_other_indices(study, tmp_path):
     results = designs()
-    text = Page(report(results, study, tmp_path)).text
+    text = Page(report(StudyContents(results, study), tmp_path)).text
     for other in ("J1", "J3"):
         value = results["other_value"].sel(layout="S2", index="J1", other=other).item()
         assert f"{value:.4g}" in text
@@ -195,18 +196,18 @@ def test_a_design_for_one_index_is_shown_with_its_other_indices(study, tmp_path)
 
 def test_a_long_sweep_is_shown_at_some_values_and_at_both_ends(sweep_study, tmp_path):
     stiffness = np.linspace(10e3, 309e3, 300)
-    text = Page(report(sweep(stiffness=stiffness), sweep_study, tmp_path)).text
+    text = Page(report(StudyContents(sweep(stiffness=stiffness), sweep_study), tmp_path)).text
     shown = re.search(r"over k in kN/m, (\d+) of 300 values", text)
     assert shown
     assert 8 <= int(shown[1]) <= 17
     assert "its improvement over the sweep lies between" in text
-    page = report(sweep(stiffness=stiffness), sweep_study, tmp_path)
+    page = report(StudyContents(sweep(stiffness=stiffness), sweep_study), tmp_path)
     assert '<th scope="row">10</th>' in page
     assert '<th scope="row">309</th>' in page
 
 
 def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
-    text = Page(report(designs(["S1"], baseline=""), study, tmp_path)).text
+    text = Page(report(StudyContents(designs(["S1"], baseline=""), study), tmp_path)).text
     assert "Improvement" not in text
     assert "Ride comfort (J1) of S1 is 2.525 m/s²; there is no other strut to compare it with." in text.replace(
         SPACE, " "
@@ -214,7 +215,7 @@ def test_a_study_of_one_layout_compares_nothing(study, tmp_path):
 
 
 def test_a_page_has_contents_that_lead_to_its_parts(study, figures):
-    source = report(designs(), study, figures)
+    source = report(StudyContents(designs(), study), figures)
     contents = re.search(r'<nav class="contents".*?</nav>', source)
     assert contents
     links = re.findall(r'<a href="#(part-\d+)">(.*?)</a>', contents[0])
@@ -225,7 +226,7 @@ def test_a_page_has_contents_that_lead_to_its_parts(study, figures):
 def test_networks_are_drawn_where_the_question_is(study, tmp_path):
     files = draw_layouts(study, tmp_path)
     assert sum(file.suffix == ".svg" for file in files) == len(study.layouts)
-    source = report(designs(), study, tmp_path)
+    source = report(StudyContents(designs(), study), tmp_path)
     page = Page(source)
     asked = source.partition("Problem definition</h2>")[2].partition("<h2")[0]
     assert page.tags.count("svg") == asked.count("<svg") == len(study.layouts)
@@ -242,7 +243,11 @@ def test_layouts_that_differ_by_case_alone_have_files_of_their_own(tmp_path):
     assert len({file.name.lower() for file in files}) == len(files) == 2
     drawn = [file.read_text(encoding="utf-8") for file in files]
     assert drawn[0] != drawn[1]
-    asked = report(designs(), study, tmp_path / "figures").partition("Problem definition</h2>")[2].partition("<h2")[0]
+    asked = (
+        report(StudyContents(designs(), study), tmp_path / "figures")
+        .partition("Problem definition</h2>")[2]
+        .partition("<h2")[0]
+    )
     assert asked.count("<svg") == 2
 
 

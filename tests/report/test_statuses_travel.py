@@ -27,6 +27,7 @@ from inerter.methods.registry import decisive_method_clause
 from inerter.papers.wang_su_2008.judging import ClaimVerdict, EstimatedQuantity, statement, within
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
 from inerter.report.text import table_lines
 from inerter.uncertainty.distributions import scatter_of
@@ -131,7 +132,7 @@ def judged_study(tmp_path, text=TEXT):
     for task, own in by_task(found).items():
         data = task.add_to_dataset(study, data, own)
     result = StudyResult(tmp_path, study, data, len(outcomes), found, False)
-    answer = re.search(r'<ul class="answer">(.*?)</ul>', report(data, study, tmp_path, found), re.DOTALL)
+    answer = re.search(r'<ul class="answer">(.*?)</ul>', report(StudyContents(data, study, found), tmp_path), re.DOTALL)
     told = {task.key: (task, TaskResults(study, data, own)) for task, own in by_task(found).items()}
     tables = {key: task.table(results) for key, (task, results) in told.items()}
     sentences = {key: next(task.sentences(results), "") for key, (task, results) in told.items()}

@@ -30,6 +30,7 @@ from inerter.report.limits import limit_tables
 from inerter.report.method_comparison import method_tables
 from inerter.report.page import report
 from inerter.report.problem_statement import vehicle_rows
+from inerter.report.study_contents import StudyContents
 from inerter.report.tables import tables_of, trade_off_tables
 from inerter.report.text import WIDTH
 from inerter.report.verdicts import verdict_sentences
@@ -156,7 +157,7 @@ def test_no_number_on_a_page_is_parted_from_its_unit(study, sweep_study, tmp_pat
         data = limited(make(), np.zeros((*missed.shape, 2), dtype=bool), missed)
         data["status"][:] = nearest
         data.attrs["notes"] = "S2: a friction of 12 N was left out"
-        page = report(data, replace(asked, limits=LIMITS), tmp_path).split("<summary>")[0]
+        page = report(StudyContents(data, replace(asked, limits=LIMITS)), tmp_path).split("<summary>")[0]
         text = re.sub(
             r"<style>.*?</style>|<wbr>|<[^>]*>", lambda tag: "" if tag[0] == "<wbr>" else "|", page, flags=re.S
         )
@@ -184,7 +185,7 @@ def test_layouts_that_keep_no_limit_are_named(study, sweep_study, where):
 def test_the_page_tells_limits_tolerances_and_budgets_where_the_question_is(study, tmp_path):
     asked = replace(study, limits=LIMITS, tolerance={"k": 0.05, "c": 0.15}, quantile=0.95, budgets=("b",))
     missed = np.zeros(designs()["status"].shape, dtype=bool)
-    page = report(limited(designs(), np.zeros((*missed.shape, 2), dtype=bool), missed), asked, tmp_path)
+    page = report(StudyContents(limited(designs(), np.zeros((*missed.shape, 2), dtype=bool), missed), asked), tmp_path)
     question = re.sub(r"<[^>]*>", " ", page.split('<h2 id="part-1">')[1].split("<h2")[0]).replace("\xa0", " ")
     question = re.sub(r"\s+", " ", question)
     for told in (
@@ -349,7 +350,7 @@ def test_a_budget_is_told_with_both_ends_of_the_range_that_it_is_the_end_of(stud
 def test_long_tables_of_facts_may_go_on_on_the_next_sheet(study, tmp_path, rows):
     elements = {f"k{i}": it.Spring(1e3 + i) for i in range(rows)}
     layouts = {"S1": StrutLayout({"strut": " | ".join(elements)})}
-    page = report(designs(), replace(study, elements=elements, layouts=layouts), tmp_path)
+    page = report(StudyContents(designs(), replace(study, elements=elements, layouts=layouts)), tmp_path)
     table = re.search(r'<table class="([^"]*)">\s*<caption><span>Elements', page)
     assert table
     assert table[1].split() == ["facts", *(["short"] if rows <= 12 else [])]
@@ -362,7 +363,7 @@ def test_long_tables_of_facts_may_go_on_on_the_next_sheet(study, tmp_path, rows)
 def test_notes_are_sentences_and_their_numbers_are_printed(study, tmp_path):
     data = designs()
     data.attrs["notes"] = "the road has the roughness 2.25325e-07 m^3/cycle\nS2: a friction of -3 N was left out"
-    text = re.sub(r"<[^>]*>", "|", report(data, study, tmp_path)).replace("\xa0", " ")
+    text = re.sub(r"<[^>]*>", "|", report(StudyContents(data, study), tmp_path)).replace("\xa0", " ")
     assert "|The road has the roughness 2.25325 × 10⁻⁷ m³/cycle|" in text
     assert "|S2: a friction of −3 N was left out|" in text
 

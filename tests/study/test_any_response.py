@@ -28,6 +28,7 @@ from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.networks.elements import Network, Parallel, Series
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 
 UNITS = {it.Spring: "N/m", it.Damper: "N s/m", it.Inerter: "kg"}
 SPEED = 20.0
@@ -259,7 +260,7 @@ def test_the_best_damper_is_that_of_the_literature(load: Load, tmp_path: Path) -
 def test_it_survives_being_written_and_is_told(load: Load, tmp_path: Path) -> None:
     study = load(OPTIMISED)
     assert_survives(study, tmp_path)
-    page = report(run_study(study, tmp_path / "out").data, study, tmp_path)
+    page = report(StudyContents(run_study(study, tmp_path / "out").data, study), tmp_path)
     for told in (
         "random response (sway)",
         "Shaping filter of felt",

@@ -19,6 +19,7 @@ from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 from inerter.report.text import table_lines
 from inerter.table import records
 from inerter.tasks.fronts import FrontAnswer, Fronts
@@ -86,7 +87,7 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
     with style_context():
         figure.draw().draw_without_rendering()
-    page = report(found.data, found.study, tmp_path, found.answers)
+    page = report(StudyContents(found.data, found.study, found.answers), tmp_path)
     assert ">Trade-off</h2>" in page
     assert re.search(r'>S2</th>\s*<td class="words">knee</td>', page)
 
@@ -166,7 +167,7 @@ def test_a_front_within_limits_that_nothing_keeps_says_so(tmp_path: Path) -> Non
     assert all("infeasible" in row.status for row in table.rows)
     assert all(cell.content is None for row in table.rows for cell in row.cells[3:-1])
     assert "front" not in [figure.name for figure in study_figures(result.data)]
-    assert report(result.data, study, tmp_path)
+    assert report(StudyContents(result.data, study), tmp_path)
 
 
 def test_a_trade_off_survives_being_written(found: StudyResult, tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ from inerter.report.conclusions import conclusion_sentences
 from inerter.report.limits import limit_tables
 from inerter.report.page import report
 from inerter.report.problem_statement import condition_rows
+from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH
 from inerter.report.verdicts import verdict_sentences
@@ -94,7 +95,7 @@ def test_limits_are_those_of_python(load: Callable[..., Study], tmp_path: Path) 
     text = terminal_text(result.data)
     assert max(map(len, text.splitlines())) <= WIDTH
     assert "raising it by 1 % changes" in " ".join(text.split())
-    assert "Every design satisfies these constraints" in report(result.data, study, tmp_path)
+    assert "Every design satisfies these constraints" in report(StudyContents(result.data, study), tmp_path)
 
 
 @pytest.mark.parametrize("of", ["dynamic-load-coefficient", "transmissibility"])
@@ -119,7 +120,7 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert (result.failed, result.status.kind.value, exit_code([result.status])) == (False, "infeasible", 1)
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
     assert verdict_sentences(result.data) == ["No strut keeps the limits, so that none is best in ride comfort (J1)."]
-    assert "the nearest design" in report(result.data, study, tmp_path)
+    assert "the nearest design" in report(StudyContents(result.data, study), tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -313,7 +314,7 @@ def test_conditions_are_those_of_python(load: Callable[..., Study], tmp_path: Pa
             )
         ]
         assert value == pytest.approx(0.3 * each[0] + 0.7 * each[1] if over == "mean" else max(each), rel=1e-9)
-    page = report(found, study, tmp_path)
+    page = report(StudyContents(found, study), tmp_path)
     assert "Operating conditions" in page
     assert "over conditions" in verdict_sentences(found)[0]
 
@@ -562,7 +563,7 @@ def test_a_limit_on_each_tyre_or_strut_is_named_apart_from_the_index_of_all(
     told = terminal_text(result.data)
     assert max(map(len, told.splitlines())) <= WIDTH
     named = f"{said}, each {kind}, at most" if kind else f"{said} at most"
-    page = report(result.data, study, tmp_path)
+    page = report(StudyContents(result.data, study), tmp_path)
     for shown in (" ".join(told.split()), " ".join(conclusion_sentences(result.data, study)), page):
         assert named in shown
         assert not kind or f"{said} at most" not in shown

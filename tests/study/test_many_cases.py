@@ -36,6 +36,7 @@ from inerter.files.study.results import DatasetBuilder, dataset
 from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
 from inerter.report.tables import sweep_tables
 from inerter.work.journal import Journal
@@ -231,7 +232,7 @@ def test_a_page_of_many_cases_is_as_small_as_any(tmp_path: Path, swift: object) 
     for points in (2000, 4000):
         study = study_of(tmp_path, points)
         data = run_study(study, tmp_path / f"out{points}").data
-        pages.append(report(data, study, tmp_path, ()))
+        pages.append(report(StudyContents(data, study, ()), tmp_path))
         for table, index in zip(sweep_tables(data), study.indices, strict=True):
             assert f"of {points} values, the extremes among them" in table.caption
             rows = one_method(data)["improvement"].sel(index=index, layout="S2")

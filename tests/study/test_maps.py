@@ -22,6 +22,7 @@ from inerter.files.study.running import run_study
 from inerter.files.study.study import Study
 from inerter.report.index_summary import sweep_headlines
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 from inerter.report.tables import map_tables
 from inerter.report.text import WIDTH
 
@@ -119,7 +120,7 @@ def test_the_figures_of_a_map_are_drawn_and_captioned(study: Study, data: xr.Dat
     assert names == ["map-J1", "map-c-J1", "map-b-J1", "map-J3", "map-c-J3", "map-b-J3"]
     files = draw_study(data.isel(index=[0], parameter=[0]), tmp_path)
     assert [file.stat().st_size > 1000 for file in files] == [True] * 4
-    page = report(data, study, tmp_path)
+    page = report(StudyContents(data, study), tmp_path)
     assert "over sprung mass and k" in page
     assert page.count('role="img"') == 2
 

@@ -16,6 +16,7 @@ from inerter.files.study.study import Study
 from inerter.indices.names import index_names
 from inerter.indices.registry import INDICES
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 
 OWN = """[indices.grip]
 kind = "tyre-load"
@@ -59,7 +60,7 @@ def test_an_own_index_is_its_kind_with_its_settings(load: Callable[..., Study], 
     data = run_study(study, tmp_path / "own").data
     alone = run_study(filtered, tmp_path / "alone").data
     np.testing.assert_array_equal(data["value"].sel(index="grip"), alone["value"].sel(index="J3"))
-    page = report(data, study, tmp_path)
+    page = report(StudyContents(data, study), tmp_path)
     assert "High-pass filter of grip" in page
     assert "Dynamic tyre load (grip)" in terminal_text(data)
 

@@ -235,7 +235,9 @@ def test_finished_study_resumes_without_work(finished: Finished) -> None:
 def test_folder_is_never_overwritten_unasked(finished: Finished) -> None:
     thesis = finished.folder / "thesis.txt"
     thesis.write_text("mine")
-    with pytest.raises(StudyError, match=r"holds results of inerter run \(journal.jsonl, results.nc, .*\)\. .*--resume.*--force"):
+    with pytest.raises(
+        StudyError, match=r"holds results of inerter run \(journal.jsonl, results.nc, .*\)\. .*--resume.*--force"
+    ):
         finished.again()
     assert finished.again(force=True).computed == 12
     assert thesis.read_text() == "mine"

@@ -18,6 +18,7 @@ from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
 from inerter.report.page import report
+from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
 from inerter.report.text import table_lines
 from inerter.tasks.tolerances import ToleranceAnswer, Tolerances
@@ -84,7 +85,7 @@ def test_a_tolerance_is_told(found: StudyResult, tmp_path: Path) -> None:
     table = Tolerances().table(TaskResults(found.study, found.data, found.answers))
     assert max(map(len, table_lines(table))) <= 80
     assert all(row.cells[-2].text.startswith("c ") for row in table.rows)  # the last column for people: due to
-    page = report(found.data, found.study, tmp_path, found.answers)
+    page = report(StudyContents(found.data, found.study, found.answers), tmp_path)
     assert ">Tolerances</h2>" in page
 
 

@@ -27,6 +27,7 @@ from inerter.files.study.summary import write_summary
 from inerter.report.conditions import condition_tables
 from inerter.report.page import report
 from inerter.report.sections import design_sections
+from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, section_text
 from inerter.report.verdicts import study_decision, verdict_sentences
@@ -151,7 +152,7 @@ def test_a_design_that_is_worse_in_a_condition_is_said_to_be(tmp_path: Path) -> 
         assert [float(cell) for cell in lines[at][3:]] == pytest.approx(values[:, column], rel=1e-3)
         assert lines[at + 1][0] == f"{results[f'{IN_CONDITIONS}improvement'].values[1, 0, 0, column]:+.1f}"
     assert max(map(len, text.splitlines())) <= WIDTH
-    page = report(results, study, tmp_path)
+    page = report(StudyContents(results, study), tmp_path)
     assert "Operating conditions" in page
     assert f"{-laden:.1f}" in page
 

@@ -24,9 +24,8 @@ from inerter.files.study.tasks import tasks
 from inerter.formatting import format_list
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
-from inerter.report.conclusions import conclusion_sentences
 from inerter.report.problem_statement import index_rows
-from inerter.report.sections import design_sections, task_sections
+from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
 from inerter.report.text import WIDTH, section_text, wrap_text
 from inerter.report.writing import write_figures_and_report
@@ -40,8 +39,11 @@ def run(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     loaded = load_study(study)
     folder = options.output or Path(f"{study.stem}-results")
     items = format_list(["designs", *(task.items or task.key for task in tasks() if task.parts(loaded))])
+    reported: list[StudyContents] = []
     with study_work(("run", str(study)), folder, options, items, _pace(loaded)) as settings:
-        result = run_study(loaded, folder, finish=write_figures_and_report, **settings)
+        result = run_study(
+            loaded, folder, finish=lambda *results: reported.append(write_figures_and_report(*results)), **settings
+        )
     say(f"report: {folder / REPORT}")
     if options.json:
         for text in as_text(result):
@@ -49,12 +51,11 @@ def run(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
     else:
         sums = [f"{title}: {what}." for title, what in index_rows(loaded, combined=True)]
         head = [line for text in (loaded.title, *roads_sentences(loaded), *sums) for line in _hanging(text)]
-        sections = [*design_sections(result.data), *task_sections(loaded, result.data, result.answers)]
-        print("\n".join([*head, "", section_text(sections)]))
+        (contents,) = reported
+        print("\n".join([*head, "", section_text([*contents.design_sections, *contents.task_sections])]))
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
-        told = conclusion_sentences(result.data, loaded, result.answers)
-        print("\n".join(["", *(line for text in told for line in _hanging(text))]))
+        print("\n".join(["", *(line for text in contents.conclusions for line in _hanging(text))]))
     _report_failures(result)
     return (result.status,)
 

@@ -9,7 +9,6 @@ from itertools import count
 from pathlib import Path
 from typing import TypedDict, Unpack
 
-import xarray as xr
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
@@ -22,11 +21,10 @@ from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
-from inerter.files.study.tasks import Answer
 from inerter.formatting import capital, join_units, typeset
-from inerter.report.conclusions import conclusion_sentences
 from inerter.report.problem_statement import computation, problem_statement
-from inerter.report.sections import Section, design_sections, task_sections, trade_off_section
+from inerter.report.sections import Section, trade_off_section
+from inerter.report.study_contents import StudyContents
 
 _SPACE = "\N{NO-BREAK SPACE}"
 _LARGER = 1.2  # than they are drawn, are drawings between text
@@ -46,28 +44,18 @@ class PageFigure:
     caption: str
 
 
-def write_report(
-    results: xr.Dataset,
-    study: Study,
-    figures: Path,
-    path: Path,
-    found: Sequence[Answer] = (),
-) -> Path:
-    """Write the report of `study` to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
-    write_text(path, report(results, study, figures, found))
+def write_report(contents: StudyContents, figures: Path, path: Path) -> Path:
+    """Write the report of a study to `path`, with those drawings (SVG) of it that are in the folder `figures`."""
+    write_text(path, report(contents, figures))
     return path
 
 
-def report(
-    results: xr.Dataset,
-    study: Study,
-    figures: Path,
-    found: Sequence[Answer] = (),
-) -> str:
+def report(contents: StudyContents, figures: Path) -> str:
     """The page as text."""
+    results, study = contents.results, contents.study
     return study_page(
         study,
-        conclusion_sentences(results, study, found),
+        contents.conclusions,
         [index_words(results, index) for index in indices(results)],
         title=results.attrs["title"],
         swept=bool(swept_places(results)),
@@ -77,8 +65,8 @@ def report(
             for layout, name in layout_figures(study).items()
             for figure in page_figures(figures, name, f"Networks of {layout}", natural=True)
         },
-        sections=list(design_sections(results)),
-        further_sections=[*task_sections(study, results, found), *trade_off_section(results)],
+        sections=contents.design_sections,
+        further_sections=[*contents.task_sections, *trade_off_section(results)],
         figures=[shown for one in study_figures(results) for shown in page_figures(figures, one.name, one.caption)],
         notes=results.attrs.get("notes", "").splitlines(),
         computation=list(computation(study, results)),

@@ -193,8 +193,7 @@ def _check(intent: WriteMode) -> None:
             again = "Replace" if intent.resume is None else "Continue with --resume, replace"
             there = _name_list(sorted({name.partition("/")[0] for name in known.by(intent.by)}))
             raise StudyError(
-                f"{folder}: holds results of inerter {intent.by} ({there}). "
-                f"{again} them with --force, or {_ELSEWHERE}."
+                f"{folder}: holds results of inerter {intent.by} ({there}). {again} them with --force, or {_ELSEWHERE}."
             )
         _check_files(intent, known)
     except OSError as error:

@@ -16,7 +16,8 @@ from synthetic import terminal_text
 from wang_su import J1, J3, ROAD
 
 import inerter as it
-from inerter.errors import Status, StatusKind
+from inerter.app.index_values import estimate_index
+from inerter.errors import PerformanceIndexError, Status, StatusKind
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
@@ -225,6 +226,15 @@ def test_simulation_confirms_an_infinite_variance():
     found = it.evaluate(with_a_damper_in_the_tyre(K | C | it.Friction(5.0)), J3, simulated)
     assert found.status.kind == "direct-term"
     assert not decisive_method_clause("norm", found.status)
+
+
+def test_simulation_that_lacks_the_force_too_is_not_said_to_decide():
+    design, gain = car(K | C | it.Friction(5.0)), it.LoadCarrying()
+    with pytest.raises(PerformanceIndexError, match="amplitude"):
+        it.evaluate(design, gain, it.ExpectedValue(realisations=2))
+    found = estimate_index(design, gain, it.StatisticalLinearisation())
+    assert found.status.kind == "failed"
+    assert not decisive_method_clause("statistical-linearisation", found.status)
 
 
 @pytest.mark.parametrize("kind", StatusKind)

@@ -127,6 +127,20 @@ def test_a_periodic_steady_state_of_a_held_signal_repeats():
     np.testing.assert_allclose(steady["tyre_load"][:-1], long["tyre_load"][-5001:-1], atol=1e-6 * long.rms("tyre_load"))
 
 
+@pytest.mark.parametrize("initial", ["periodic", "rest"])
+def test_both_ends_of_a_period_count_once_in_its_rms(initial):
+    """A damper has its largest force at both ends of a period where a sine moves it, and none there with a cosine."""
+    for motion in (it.sine(0.01, 1.0), it.cosine(0.01, 1.0)):
+        run = it.simulate(it.Rig(it.Damper(100.0)), displacement=motion, initial=initial, duration=1.0, step=2e-3)
+        assert run.rms("device_force") == pytest.approx(100.0 * 0.01 * 2.0 * np.pi / np.sqrt(2.0), rel=1e-9)
+
+
+def test_the_rms_of_a_ramp_is_that_over_its_time():
+    ramp = it.Signal.sampled([0.0, 1.0], [0.0, 0.03], "linear")
+    run = it.simulate(it.Rig(it.Spring(1e4)), displacement=ramp, duration=1.0, step=2e-3)
+    assert run.rms("device_force") == pytest.approx(300.0 / np.sqrt(3.0), rel=1e-6)
+
+
 def test_preload_is_where_a_constant_force_leaves_everything_at_rest():
     """A spring behind a gap: the load closes the gap, and the deflection is that of both springs."""
     car = it.QuarterCar(200.0, 30.0, 150e3, it.Damper(1500.0) | (it.Spring(40e3, name="k") - it.Gap(2e-3, name="gap")))

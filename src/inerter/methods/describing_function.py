@@ -171,7 +171,8 @@ def harmonic_balance(mechanism: Mechanism, definition: IndexDefinition) -> Harmo
     check_peak_gain(definition)
     if definition.amplitude is None:
         raise PerformanceIndexError(
-            "A peak gain with friction depends on the amplitude of the force. Give it, such as 1000 N."
+            "A peak gain with friction depends on the amplitude of the force, which expected-value needs too. Give it, "
+            "such as 1000 N."
         )
     parts = equivalent(mechanism)
     paths = definition.input_paths(parts.mechanism)

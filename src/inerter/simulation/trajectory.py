@@ -171,8 +171,12 @@ class Trajectory:
         return self._evaluate(output)
 
     def rms(self, name: str) -> float:
-        """Root of the mean square of an output over all samples."""
-        return float(np.sqrt(np.mean(self[name] ** 2)))
+        """Root of the mean square of an output over the time of the samples, by the trapezoidal rule.
+
+        The two ends of a period, which are one instant, then count as one sample.
+        """
+        squares, duration = self[name] ** 2, self.time[-1] - self.time[0]
+        return float(np.sqrt(np.trapezoid(squares, self.time) / duration if duration > 0.0 else np.mean(squares)))
 
     def peak(self, name: str) -> Peak:
         """The sample of an output that is farthest from zero, and when it was."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,19 +103,23 @@ def encoder_noise(experiment: Experiment) -> float:
     if record.displacement_noise is not None:
         return record.displacement_noise
     taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
-    return taken / math.sqrt(float(np.mean((1.0 - _gains(experiment)) ** 2)))
+    return taken / math.sqrt(float(np.mean((1.0 - _gains_of(experiment)) ** 2)))
 
 
 def passed_share(experiment: Experiment) -> float:
     """Share of the variance of white errors of the displacement that the smoothed motion has."""
-    return float(np.mean(_gains(experiment) ** 2))
+    return float(np.mean(_gains_of(experiment) ** 2))
 
 
-def _gains(experiment: Experiment) -> Matrix:
+def _gains_of(experiment: Experiment) -> Matrix:
     """The gain of the filter of the displacement over the frequencies of white errors."""
-    interval = experiment.record.interval
+    return _gains(experiment.record.interval, experiment.motion.bandwidth)
+
+
+@lru_cache(16)  # each draw of noise needs it twice
+def _gains(interval: float, bandwidth: float) -> Matrix:
     frequency = np.linspace(0.0, 0.5 / interval, _LINES, endpoint=False, dtype=np.float64)
-    return gain(frequency, interval, experiment.motion.bandwidth)
+    return gain(frequency, interval, bandwidth)
 
 
 def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: np.random.Generator) -> Matrix:

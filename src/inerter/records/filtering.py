@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, sosfiltfilt, sosfreqz
@@ -41,6 +43,7 @@ def gain(frequency: Vector, interval: float, bandwidth: float) -> Vector:
     return squared
 
 
+@lru_cache(64)  # a fit filters a record with the same one hundreds of times
 def _sections(interval: float, bandwidth: float) -> Vector:
     if not 0.0 < bandwidth < 0.5 / interval:
         most, given = format_alike([0.5 / interval, bandwidth], "Hz")

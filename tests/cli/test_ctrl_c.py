@@ -153,7 +153,7 @@ def trouble(name: str, after: float, home: Path, patience: float) -> Iterator[st
 
 
 @pytest.mark.parametrize(
-    "name", sampled(["run", "sweep", "simulate", "identify", "rig", "check", "reproduce"], ["sweep"], kept=3)
+    "name", sampled(["run", "sweep", "simulate", "identify", "rig", "check", "reproduce"], ["sweep"], kept=2)
 )
 def test_an_interrupt_is_one_sentence_and_leaves_nothing(name: str, home: Path) -> None:
     after = random.Random(name).uniform(0.3, 2.0)

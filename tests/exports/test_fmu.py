@@ -71,7 +71,7 @@ def simulated(vehicle: object, signal: it.Signal, step: float, duration: float, 
 @pytest.mark.parametrize(
     ("kind", "number"),
     sampled(
-        [(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2)], often=[("fmu3", 1)], kept=2
+        [(kind, number) for kind in KINDS for number in (0, 1, 2, 3, 4, 9)], [("fmu", 2)], often=[("fmu3", 1)], kept=1
     ),
 )
 @pytest.mark.usefixtures("unoptimised")
@@ -90,7 +90,7 @@ def test_it_moves_as_the_simulation(kind: str, step: float, masters: list[Master
     assert error(found, simulated(CAR, signal, step, 1.0, SHOWN)) < 1e-11
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2,), often=(4,), kept=2))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], (2,), often=(4,), kept=1))
 def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = design(number), 1e-3
     signal, height, slope = road(0.5, step, number)
@@ -119,7 +119,7 @@ ROUGH = {  # struts, with the largest error of an output against the event-drive
         [(kind, name) for kind in KINDS for name in ROUGH],
         [("fmu", "backlash and friction")],
         often=[("fmu3", "a stop")],
-        kept=4,
+        kept=2,
     ),
 )
 def test_friction_and_gaps_move_as_the_simulation(name: str, kind: str, masters: list[Master], tmp_path: Path) -> None:
@@ -175,7 +175,7 @@ def rough(number: int) -> it.Mechanism:
     )
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], often=(2, 9), kept=2))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], often=(2, 9), kept=0))
 def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
     vehicle, step = rough(number), 1e-3
     signal, height, slope = road(0.5, step, number)

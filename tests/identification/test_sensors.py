@@ -44,7 +44,7 @@ def experiment(motion: NDArray[np.float64], step: float, noise: float, random: n
     return experiment_of(it.Record(time, taken, force, source="encoder", displacement_noise=known))
 
 
-@pytest.mark.parametrize("seed", sampled(range(8), [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(8), [0], kept=1))
 def test_where_a_table_starts_is_as_uncertain_as_the_encoder_reads(seed: int) -> None:
     """What a gap is told by first is the way to its first contact; that is read from one step of the encoder on."""
     random = np.random.default_rng([11, seed])

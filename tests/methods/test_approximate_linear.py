@@ -190,7 +190,7 @@ def test_friction_alone_between_body_and_wheel():
     sampled(
         [(300.0, 300.0), (300.0, 30.0), (250.0, 10.0), (100.0, 300.0), (20.0, 400.0)],
         [(300.0, 30.0)],
-        kept=2,
+        kept=1,
     ),
 )
 def test_what_friction_damps_is_the_same_whatever_the_period(damping, force):

@@ -185,7 +185,7 @@ def is_damped(mechanism: it.Mechanism) -> bool:
     )
 
 
-@pytest.mark.parametrize("seed", sampled(range(100), [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(100), [0], often=[50], kept=0))
 def test_each_criterion_is_the_integral_of_its_response(seed: int) -> None:
     """On random mechanisms, 100 in all, that are damped enough for a quadrature."""
     family = list(FAMILIES)[seed % len(FAMILIES)]
@@ -217,7 +217,7 @@ def test_the_gradient_of_weighted_comfort_is_the_slope_of_its_values() -> None:
         assert gradient[i] * point[i] == pytest.approx((ahead - behind) / (2.0 * step), abs=1e-5 * value)
 
 
-@pytest.mark.parametrize("weighting", sampled(["Wk", "Wd"], []))
+@pytest.mark.parametrize("weighting", sampled(["Wk", "Wd"], kept=1))
 def test_weighted_comfort_of_a_half_car_and_its_gradient(weighting: str) -> None:
     """Pitch counts times 0.4 m/rad through We; the parts are put together as the root of their squares."""
     car = paper_half_car(Spring(60e3) | Damper(it.free(500.0, 9e3, "c")), Spring(50e3) | Damper(2e3) - Inerter(90.0))

@@ -47,7 +47,7 @@ def test_where_friction_turns_between_samples_the_bound_knows(number):
     check(of_finer_steps(member_with_friction(number), ROADS))
 
 
-@pytest.mark.parametrize("number", sampled(range(60), [2], kept=5))
+@pytest.mark.parametrize("number", sampled(range(60), [2], kept=3))
 def test_where_a_stop_is_met_between_samples_the_bound_knows(number):
     """The force of its damper jumps, and with it the acceleration."""
     for method in (replace(ROADS, period=10), GAINS):

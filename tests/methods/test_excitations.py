@@ -39,13 +39,13 @@ def members(seed, count):
             yield mechanism, index
 
 
-@pytest.mark.parametrize("seed", sampled(range(11), [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(11), [0], kept=1))
 def test_random_responses_of_random_mechanisms(seed):
     """A value is right to 1e-9, or nan with its reason."""
     assert sum(rational.is_right(*member) for member in members(seed, 4)) >= 10
 
 
-@pytest.mark.parametrize("seed", sampled(range(100, 111), [100], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(100, 111), [100], kept=1))
 def test_compiled_values_and_gradients_under_random_excitations(seed):
     checked = 0
     for mechanism, index in members(seed, 2):

@@ -41,13 +41,13 @@ def members(seed, count):
             yield mechanism, Weighed(index, some_filters(rng, definition))
 
 
-@pytest.mark.parametrize("seed", sampled(range(21), [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(21), [0], kept=1))
 def test_norms_of_random_vehicles_with_random_filters(seed):
     """Against rational arithmetic: a value is right to 1e-9, or nan with its reason."""
     assert sum(rational.is_right(*member) for member in members(seed, 6)) >= 15
 
 
-@pytest.mark.parametrize("seed", sampled(range(100, 121), [100], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(100, 121), [100], kept=1))
 def test_compiled_norms_and_gradients_with_random_filters(seed):
     """Values against rational arithmetic, gradients against its differences.
 

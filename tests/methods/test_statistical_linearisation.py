@@ -120,7 +120,7 @@ def test_none_is_the_norm_and_a_huge_one_is_a_rigid_link(name):
         assert small == pytest.approx([value(free, index)] * 2, rel=1e-5)
 
 
-@pytest.mark.parametrize("name", sampled(LAYOUTS, ["S3"], kept=2))
+@pytest.mark.parametrize("name", sampled(LAYOUTS, ["S3"], kept=1))
 def test_no_jump_from_none_to_stuck(name):
     forces = np.geomspace(1.0, 1e5, 40)
     for index in (J1, J3, J5):

@@ -57,7 +57,7 @@ ALIKE = {
 }
 
 
-@pytest.mark.parametrize("name", sampled(ALIKE, ["alike for J1"]))
+@pytest.mark.parametrize("name", sampled(ALIKE, ["alike for J1"], ["alike for J3"]))
 def test_alike_without_friction_and_with_a_rigid_link_is_not_alike_between(name):
     judged(paper_quarter_car(Spring(120e3) | ALIKE[name]))
 

@@ -20,7 +20,7 @@ PEAKS = 160  # of which one in six or seven has a peak that the compiled code kn
 ROOT = 4e-16  # of the last operations, which the bound leaves out
 
 
-@pytest.mark.parametrize("block", sampled(range(125), range(1), kept=3))
+@pytest.mark.parametrize("block", sampled(range(125), range(1), kept=1))
 def test_an_index_is_within_its_bound_of_rational_arithmetic(block):
     pytest.importorskip("flint", reason="python-flint is not installed")
     compared = 0
@@ -62,7 +62,7 @@ def test_a_peak_gain_is_within_its_bound_of_rational_arithmetic(block):
 
 
 @pytest.mark.parametrize("peaks", [False, True])
-@pytest.mark.parametrize("block", sampled(range(50), often=range(1), kept=1))
+@pytest.mark.parametrize("block", sampled(range(50), often=range(1), kept=0))
 def test_designs_side_by_side_have_the_digits_of_designs_in_turn(block, peaks):
     compared = 0
     for number in range(BLOCK * block, BLOCK * (block + 1)):
@@ -101,7 +101,7 @@ def test_an_index_is_seldom_unknown(blocks):
     assert sum(error == math.inf for _, error, _ in found) <= 0.1 * len(found)
 
 
-@pytest.mark.parametrize("block", sampled(range(40), range(1), kept=2))
+@pytest.mark.parametrize("block", sampled(range(40), range(1), kept=1))
 def test_gradients_are_those_of_differences(block):
     for number in range(BLOCK * block, BLOCK * (block + 1)):
         member = random_member(number, extreme=0.0)

@@ -129,7 +129,7 @@ def test_networks_are_ranked_by_value_then_by_size_then_by_layout():
         assert one.value < other.value or (tied and one.topology < other.topology)
 
 
-@pytest.mark.parametrize("index", sampled(["comfort", "load", "travel"], ["comfort"]))
+@pytest.mark.parametrize("index", sampled(["comfort", "load", "travel"], ["comfort"], kept=1))
 def test_networks_of_equal_admittance_have_equal_values(index):
     result = found(index, 4)
     by_topology = {one.topology: one for one in result.ranking}
@@ -328,7 +328,7 @@ def test_names_of_the_elements_are_those_that_are_left():
     assert all(np.isfinite(one.value) for one in result.ranking)
 
 
-@pytest.mark.parametrize("number", sampled(range(30), range(1), kept=4))
+@pytest.mark.parametrize("number", sampled(range(30), range(1), kept=1))
 def test_networks_with_bridges_are_searched_too(number):
     rng = np.random.default_rng([61, number])
     kinds = ("springs", "dampers") if rng.random() < 0.5 else ("dampers", "inerters")

@@ -118,7 +118,7 @@ def test_a_break_even_value_is_as_uncertain_as_the_values_that_are_equal_there(f
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize(("friction", "index"), sampled([(20.0, J3), (60.0, J1), (100.0, J3)], kept=2))
+@pytest.mark.parametrize(("friction", "index"), sampled([(20.0, J3), (60.0, J1), (100.0, J3)], kept=1))
 def test_break_even_friction_is_within_its_bound_of_that_of_simulations(friction, index):
     """At 100 N the frictions are 7 % apart, where the values are within 1 %."""
     baseline = with_the_value_of(friction, index)

@@ -77,7 +77,7 @@ def test_a_figure_of_one_method_of_several_says_where_the_others_are(make):
     assert ("The values by simulation are in summary.csv." in caption) == (make is a_map)
 
 
-@pytest.mark.parametrize("seed", sampled(range(20), [2], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(20), [2], kept=1))
 @pytest.mark.parametrize("make", [sweep, a_map])
 def test_limits_over_a_sweep_are_told_by_table_terminal_and_figure(make, seed):
     random = np.random.default_rng(seed)

@@ -103,7 +103,7 @@ def sampled_profiles(seed: int, waviness: float, interval: float) -> dict[str, i
     return {way: it.Profile(interval * np.arange(half), values[:half]) for way, values in heights.items()}
 
 
-@pytest.mark.parametrize(("waviness", "interval"), sampled([(2.0, 0.25), (2.0, 0.05), (2.5, 0.25), (3.0, 0.5)], kept=2))
+@pytest.mark.parametrize(("waviness", "interval"), sampled([(2.0, 0.25), (2.0, 0.05), (2.5, 0.25), (3.0, 0.5)], kept=1))
 def test_samples_that_show_shorter_waves_give_the_line_of_the_road(waviness: float, interval: float):
     """The same roads without those waves are the reference, so that what is random in the others is the waves alone."""
     roads = [sampled_profiles(seed, waviness, interval) for seed in range(16)]

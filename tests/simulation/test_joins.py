@@ -95,7 +95,7 @@ def assert_close(judge: Callable[[int], float | None], seeds: Iterable[int], lea
     assert len(known) >= least
 
 
-@pytest.mark.parametrize("chunk", sampled(range(4), often=[0], kept=1))
+@pytest.mark.parametrize("chunk", sampled(range(4), often=[0], kept=0))
 def test_two_parts_are_the_whole(chunk: int) -> None:
     assert_close(joined, range(5000 + 100 * chunk, 5000 + 100 * chunk + 10), 6)
 
@@ -126,8 +126,7 @@ def test_time_stepping_goes_on_as_well() -> None:
     assert_close(stepped, (0, 2, 3, 5, 6, 8), 1, 1e-7)
 
 
-@pytest.mark.campaign
-@pytest.mark.parametrize("chunk", range(5))
+@pytest.mark.parametrize("chunk", sampled(range(5), kept=2))
 def test_time_stepping_goes_on_in_many_members(chunk: int) -> None:
     assert_close(stepped, range(1000 * chunk, 1000 * chunk + 10), 1, 1e-7)
 

@@ -100,7 +100,7 @@ FEW = [(range(1000 * chunk, 1000 * chunk + 40), 8) for chunk in range(4)]
 MANY = [(range(10_000 * chunk, 10_000 * chunk + 250), 50) for chunk in range(20)]
 
 
-@pytest.mark.parametrize(("seeds", "least"), sampled([*FEW, *MANY], FEW, kept=2))
+@pytest.mark.parametrize(("seeds", "least"), sampled([*FEW, *MANY], FEW, kept=1))
 def test_rigs_at_rest_are_the_same_in_every_frame(seeds: range, least: int) -> None:
     found = [f for seed in seeds if (f := frames(seed)) is not None]
     assert max(found) < CLOSE

@@ -20,7 +20,7 @@ LIMIT = 20.0  # s of a processor
 CHEAP = [6, 16]  # of the first round of bases, none of which takes a search
 
 
-@pytest.mark.parametrize("seed", sampled(range(300), CHEAP, [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(300), CHEAP, [0], often=[151], kept=0))
 def test_a_valid_extreme_ends_in_time(tmp_path: Path, capsys: pytest.CaptureFixture[str], seed: int) -> None:
     case = extreme(seed)
     path, output = tmp_path / "case.toml", tmp_path / ("case.csv" if case.command == "rig" else "results")

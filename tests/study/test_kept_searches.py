@@ -52,7 +52,7 @@ def counted(stop_at: int | None = None) -> Iterator[list[int]]:
         yield count
 
 
-@pytest.mark.parametrize(("name", "seed"), sampled(product(STUDIES, range(2)), [("limits", 0)], kept=2))
+@pytest.mark.parametrize(("name", "seed"), sampled(product(STUDIES, range(2)), [("limits", 0)], kept=1))
 def test_a_run_interrupted_within_a_design_goes_on_from_its_searches(name: str, seed: int, tmp_path: Path) -> None:
     path, draw = tmp_path / "study.toml", random.Random(f"{name} {seed}")
     path.write_text(STUDIES[name], encoding="utf-8")

@@ -159,7 +159,7 @@ def test_a_large_sweep_is_checked_at_its_ends_and_extremes() -> None:
     assert corners <= {both.sweep_values(point) for point in checking._points_to_check(both)}
 
 
-@pytest.mark.parametrize("seed", sampled(range(4), [0], kept=2))
+@pytest.mark.parametrize("seed", sampled(range(4), [0], kept=1))
 def test_a_sweep_cut_anywhere_goes_on_to_the_same_bytes(tmp_path: Path, swift: Callable, seed: int) -> None:
     """No line that is whole is computed again, whatever was cut; nor is a copy by another name touched."""
     study, draw = study_of(tmp_path, 25), random.Random(seed)

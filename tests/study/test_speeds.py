@@ -217,7 +217,7 @@ def test_what_takes_more_digits_than_double_precision_is_not_asked_at_other_spee
 
 
 @pytest.mark.parametrize(
-    "name", sampled(["speed", "speed_value", "speed_message", "at_speeds", "v"], ["speed"], kept=2)
+    "name", sampled(["speed", "speed_value", "speed_message", "at_speeds", "v"], ["speed"], kept=1)
 )
 def test_an_element_of_any_name_that_results_do_not_use_can_be_swept(name, tmp_path):
     """Also one that is called as what results say of other speeds is."""

@@ -77,7 +77,7 @@ def mismatch(car, outputs, omega, response=frequency_response):
     return difference(response(system, omega), car.mechanism(), system.inputs, outputs, omega)
 
 
-@pytest.mark.parametrize("chunk", sampled(range(10), often=[0], kept=1))
+@pytest.mark.parametrize("chunk", sampled(range(10), often=[0], kept=0))
 def test_five_hundred_random_networks_in_both_cars(chunk):
     for seed in range(50 * chunk, 50 * chunk + 50):
         rng = np.random.default_rng(seed)

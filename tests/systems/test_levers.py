@@ -72,7 +72,7 @@ def full_car(rng, one_road=False):
     )
 
 
-@pytest.mark.parametrize("chunk", sampled(range(20), [0], kept=4))
+@pytest.mark.parametrize("chunk", sampled(range(20), [0], kept=2))
 def test_dependent_struts_agree_with_the_nodal_solve_however_their_levers_are_rounded(chunk):
     for seed in range(5 * chunk, 5 * chunk + 5):
         rng = np.random.default_rng([41, seed])
@@ -87,7 +87,7 @@ def test_dependent_struts_agree_with_the_nodal_solve_however_their_levers_are_ro
                 assert error.max() < 1e-9, (seed, output)
 
 
-@pytest.mark.parametrize("seed", sampled(range(12), often=[0], kept=1))
+@pytest.mark.parametrize("seed", sampled(range(12), often=[0], kept=0))
 def test_norms_of_dependent_struts_are_those_of_quadrature(seed):
     mechanism = full_car(np.random.default_rng([42, seed]), one_road=True)
     for output in ("body_acceleration", "roll_acceleration", "diagonal_travel"):

@@ -39,7 +39,7 @@ def assert_equal_descriptors(found, expected):
         np.testing.assert_allclose(ours, theirs, rtol=1e-14)
 
 
-@pytest.mark.parametrize("family", sampled(FAMILIES, [*FAMILIES][::2]))
+@pytest.mark.parametrize("family", sampled(FAMILIES, [*FAMILIES][::2], kept=1))
 def test_descriptors_equal_those_made_directly(family):
     for mechanism in mechanisms(family, seed=11, count=25, extremes=30.0):
         assert_equal_descriptors(describe(mechanism), directly(mechanism))

@@ -143,7 +143,7 @@ def ever_after(number: int) -> bool:
 
 
 ALWAYS_RUN = {(earlier, once), (earlier, ever_after), (nothing, once), (without_memory, ever_after)}
-RUNS = sampled(product(FAULTS, (once, ever_after)), ALWAYS_RUN, kept=12)
+RUNS = sampled(product(FAULTS, (once, ever_after)), ALWAYS_RUN, kept=6)
 
 
 @pytest.mark.parametrize(("fault", "when"), RUNS, ids=lambda given: given.__name__)

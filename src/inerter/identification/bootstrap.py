@@ -20,7 +20,8 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.stats import chi2, norm
+from scipy.special import ndtr
+from scipy.stats import chi2
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.intervals import ROBUST, BestFit, steps_of
@@ -103,9 +104,8 @@ def _widening_table(draws: int) -> Matrix:
         weight = prior * np.exp(likelihood - likelihood.max())
 
         def excess_miss_probability(factor: float) -> float:
-            return float(
-                2.0 * weight @ norm.sf(factor * NORMAL_QUANTILE / np.sqrt(true)) / weight.sum() - (1.0 - CONFIDENCE)
-            )
+            missed = ndtr(-(factor * NORMAL_QUANTILE / np.sqrt(true)))
+            return float(2.0 * weight @ missed / weight.sum() - (1.0 - CONFIDENCE))
 
         return float(brentq(excess_miss_probability, 0.5, 1e4) ** 2)
 

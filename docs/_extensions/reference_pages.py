@@ -20,9 +20,10 @@ from sphinx.application import Sphinx
 import inerter
 from inerter.cli.main import app as command_line
 from inerter.field_metadata import choices_of, fields_of
-from inerter.files.common.keys import ANY_NAME, Key, keys_of
+from inerter.files.common.keys import ANY_NAME, Key, keys_of_files
 from inerter.files.common.toml import as_line
-from inerter.files.study.schema import study_schema
+from inerter.files.study import KIND
+from inerter.formatting import format_list
 
 # titles of packages in the order of the page, by the first part of where a name is defined
 SUBJECTS = {
@@ -126,7 +127,7 @@ def write_reference(folder: Path) -> None:
     pages = {
         "index.md": _contents(),
         "commands.md": "\n".join(_commands()),
-        "keys.md": "\n".join(_keys(keys_of(study_schema()))),
+        "keys.md": "\n".join(_keys(keys_of_files())),
         "python.md": "\n".join(_names()),
         **{f"python/{name}.rst": _page(name) for name in public_names()},
     }
@@ -250,11 +251,14 @@ def _help(name: str) -> str:
 
 
 def _keys(keys: Sequence[Key]) -> Iterator[str]:
-    yield "# Keys of study files\n"
+    yield "# Keys of files\n"
     yield 'The keys of `inerter explain`. Quantities are texts with a unit, such as `"120 kN/m"`; NAME is a name of'
     yield "your own.\n"
     for section in dict.fromkeys(key.place.partition(".")[0] for key in keys):
         yield f"## {section}\n"
+        files = next(key.files for key in keys if key.section_name == section)
+        if KIND.plural not in files:
+            yield f"In {format_list(files)}.\n"
         places = dict.fromkeys(key.place for key in keys if key.place.partition(".")[0] == section)
         yield from _table(["key", "what"], ([f"`{place}`", _meaning(place, keys)] for place in places))
 

@@ -1,16 +1,18 @@
-"""What tells of study files: `inerter explain`, of every key."""
+"""What tells of files: `inerter explain`, of every key of every kind."""
 
 import tomllib
 
 import pytest
 
 from inerter.cli.main import call
-from inerter.files.common.keys import ANY_NAME, find_keys, keys_of
-from inerter.files.study.schema import study_schema
+from inerter.files.common.keys import ANY_NAME, find_keys, keys_of, keys_of_files
+from inerter.files.common.kinds import kinds
+from inerter.files.study import KIND
 from inerter.indices.registry import INDICES
 
-KEYS = keys_of(study_schema())
+KEYS = keys_of_files()
 PLACES = list(dict.fromkeys(key.place for key in KEYS))
+OF_STUDIES = keys_of(KIND.schema())
 
 
 def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
@@ -62,9 +64,29 @@ def test_a_key_that_others_may_replace_is_told_with_them(capsys):
 
 def test_all_keys_in_a_table(capsys):
     out = told(capsys)
-    assert [line.split()[0] for line in out.split("\n")[1:] if line[:1].strip()] == PLACES
-    for key in KEYS:
+    table, _, others = out.partition("\n\n")
+    assert [line.split()[0] for line in table.split("\n")[1:] if line[:1].strip()] == list(
+        dict.fromkeys(key.place for key in OF_STUDIES)
+    )
+    assert words(others).endswith(": record, model, fit, signal, rig, simulation")
+    for key in OF_STUDIES:
         assert key.sentence in words(out)
+
+
+@pytest.mark.parametrize("kind", kinds(), ids=lambda kind: kind.command)
+def test_every_section_of_every_kind_of_file_is_told(kind, capsys):
+    for section in kind.schema()["properties"]:
+        text = told(capsys, section)
+        only = [one.plural for one in kinds() if section in one.schema()["properties"]]
+        assert ("\n  in  " in text) == (KIND.plural not in only)
+        assert all(plural in words(text) for plural in only if KIND.plural not in only)
+
+
+def test_a_key_of_a_simulation_is_told_with_its_kinds_and_units(capsys):
+    text = told(capsys, "signal.amplitude")
+    assert text.count("signal.amplitude (sine, cosine, chirp): Amplitude.") == 1
+    assert "  in       rig files and simulation files\n  unit     m or N or N m or m/s^2\n" in text
+    assert "simulation.step: " in told(capsys, "step")
 
 
 def test_a_section_is_told_with_its_keys(capsys):
@@ -89,7 +111,7 @@ def test_words_that_keys_take_are_told_too(word, capsys):
         ("xyz.abc", "inerter explain"),
         ("", "inerter explain"),
         ("...", "inerter explain"),
-        ("signal.amplitude", "inerter simulate"),
+        ("simulation.stp", 'Did you mean "simulation.step"?'),
         ("study.forse", 'Did you mean "study.force"?'),
         ("NAME", "inerter explain"),
     ],

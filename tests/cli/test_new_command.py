@@ -8,9 +8,9 @@ from jsonschema import Draft202012Validator
 
 from inerter.cli.main import call
 from inerter.field_metadata import fields_of
+from inerter.files.study import KIND
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.schema import study_schema
 from inerter.files.study.sections import judged_models
 from inerter.files.study.starting import starting_text
 from inerter.vehicle.registry import VEHICLES
@@ -26,7 +26,7 @@ def test_a_start_for_every_vehicle(model, tmp_path, monkeypatch, capsys):
     assert study.model == model
     assert study.optimise
     assert len(study.layouts) >= 2
-    assert Draft202012Validator(study_schema()).is_valid(tomllib.loads(text))
+    assert Draft202012Validator(KIND.schema()).is_valid(tomllib.loads(text))
     for field in fields_of(VEHICLES[model]) if model in VEHICLES else ():
         assert re.search(rf"{field.key} = .*# {re.escape(field.sentence.rstrip('.'))}\n", text)
     assert max(map(len, text.split("\n"))) <= 120
@@ -41,7 +41,7 @@ def test_what_is_a_remark_can_be_taken_in():
     text = starting_text("quarter-car")
     told = re.findall(r"^# (\w+ = .*)$", text, re.MULTILINE)
     assert len(told) > 6
-    editor = Draft202012Validator(study_schema())
+    editor = Draft202012Validator(KIND.schema())
     for line in told:
         with_it = tomllib.loads(text + f"{line}\n")
         assert editor.is_valid(with_it), line

@@ -141,6 +141,7 @@ COMMANDS: dict[str, Callable[[Path], None]] = {
     "inerter new quarter-car": nothing,
     "inerter explain road.speed": nothing,
     "inerter explain study.subject_to": nothing,
+    "inerter explain simulation.step": nothing,
     "inerter simulate examples/backlash_rattle.toml": nothing,
     "inerter simulate my-car.toml -o motion --force": a_car,
     "inerter simulate my-car.toml --window 2:4": a_car,

@@ -15,8 +15,7 @@ from pages import NUMBER, PAGES, text_of
 
 import inerter
 from inerter.cli.main import app
-from inerter.files.common.keys import keys_of
-from inerter.files.study.schema import study_schema
+from inerter.files.common.keys import keys_of_files
 
 # "Dodds and Robson 1973", "Smith (2002)", "Saltelli et al. (2010)": the first author, and the year
 SOURCE = re.compile(r"\b([A-ZÅ][^\W\d_]+)(?:(?:, [A-Z]\w+)* and [A-Z]\w+| et al\.)? \(?((?:19|20)\d\d)\b")
@@ -75,7 +74,7 @@ def test_every_command_is_there(reference: Path) -> None:
 
 def test_every_key_is_there(reference: Path) -> None:
     text = (reference / "keys.md").read_text(encoding="utf-8")
-    keys = keys_of(study_schema())
+    keys = keys_of_files()
     assert [key.place for key in keys if f"`{key.place}`" not in text] == []
     assert [key.sentence for key in keys if key.sentence.replace("|", "\\|") not in text] == []
 

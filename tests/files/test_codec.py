@@ -13,7 +13,7 @@ from inerter.files.common.codec import INVALID, TableCodec, key, keyed_dataclass
 from inerter.files.common.codecs import NamesCodec, RowsCodec
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import TEXT, YES_OR_NO, QuantityCodec, not_negative, positive, some_of, whole, word
-from inerter.files.identification.sections import IDENTIFICATION
+from inerter.files.identification.sections import identification_codec
 from inerter.files.rig.sections import rig_codec
 from inerter.files.simulation.sections import simulation_codec
 from inerter.files.study.loading import load_study
@@ -25,7 +25,7 @@ from inerter.registry import cache_until_registration
 
 TABLES = {path.stem: tomllib.loads(path.read_text(encoding="utf-8")) for path in sorted(EXAMPLES.glob("*.toml"))}
 STUDIES = [name for name, tables in TABLES.items() if "study" in tables]
-CODECS = {"study": study_codec, "simulation": simulation_codec, "rig": rig_codec, "fit": lambda: IDENTIFICATION}
+CODECS = {"study": study_codec, "simulation": simulation_codec, "rig": rig_codec, "fit": identification_codec}
 
 
 @keyed_dataclass

@@ -9,10 +9,10 @@ from study_text import assert_refused, assert_survives, load_text, study_text
 
 import inerter as it
 from inerter.errors import StudyError
+from inerter.files.study import KIND
 from inerter.files.study.checking import check_study
 from inerter.files.study.drafts import Draft
 from inerter.files.study.places import places
-from inerter.files.study.schema import study_schema
 from inerter.files.study.study import Study, searched_layouts
 from inerter.networks.free_network import FreeNetwork, free_networks
 
@@ -93,7 +93,7 @@ def test_a_run_refuses_it_and_names_the_search(tmp_path: Path) -> None:
 
 
 def test_schema_and_drafts_know_it() -> None:
-    entries = study_schema()["properties"]["elements"]["additionalProperties"]["anyOf"]
+    entries = KIND.schema()["properties"]["elements"]["additionalProperties"]["anyOf"]
     assert any("network" in entry.get("properties", {}) for entry in entries)
     draft = Draft({"elements": {"any": {"network": 2, "springs": {"from": "1 N/m", "to": "2 N/m"}}}, "layouts": {}})
     assert draft.elements == {}

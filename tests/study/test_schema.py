@@ -20,13 +20,13 @@ from inerter.errors import StudyError, UnitError
 from inerter.files.common.entries import LOWER, UPPER
 from inerter.files.common.schema import UNIT, USUAL, quantity_schema
 from inerter.files.common.toml import as_toml
+from inerter.files.study import KIND
 from inerter.files.study.loading import load_study
-from inerter.files.study.schema import study_schema
 from inerter.roads.reading import Columns
 from inerter.units import parse_quantity
 
 STUDIES = [path for path in sorted(EXAMPLES.glob("*.toml")) if "\n[study]" in path.read_text(encoding="utf-8")]
-SCHEMA = study_schema()
+SCHEMA = KIND.schema()
 EDITOR = Draft202012Validator(SCHEMA)
 NUMBERS = st.one_of(
     st.floats(0.0, 1e9).map(repr),

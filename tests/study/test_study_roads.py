@@ -17,6 +17,7 @@ from inerter.errors import StudyError
 from inerter.files.common.keys import find_keys, keys_of
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.simulation.request import write_simulation
+from inerter.files.study import KIND
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.checking import study_notes
 from inerter.files.study.conditions import condition_of
@@ -24,7 +25,6 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
-from inerter.files.study.schema import study_schema
 from inerter.files.study.study import Study
 from inerter.formatting import format_number
 from inerter.report.conclusions import conclusion_sentences
@@ -234,7 +234,7 @@ def test_a_line_through_few_bands_is_told_first(load, tmp_path):
 
 
 def test_what_explains_files_knows_roads():
-    keys = keys_of(study_schema())
+    keys = keys_of(KIND.schema())
     places = {key.place for key in keys}
     assert places >= {f"road.{key}" for key in ("profile", "track", "coherence", "coherence.track", "coherence.level")}
     (corner,) = find_keys(keys, "coherence.wavenumber")

@@ -9,11 +9,11 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.errors import StudyError
-from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of
-from inerter.files.common.kinds import FileKind, kind_with
+from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of_files
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
-from inerter.files.study.schema import study_schema
+from inerter.files.study import KIND
+from inerter.formatting import format_list
 from inerter.indices.names import index_names
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import METHODS
@@ -29,20 +29,24 @@ _NAMES = {"layouts": "S3"}  # of an example, by its section; elsewhere that of a
 
 def schema() -> None:
     """Print the JSON Schema of study files."""
-    print(json.dumps(study_schema(), indent=2, ensure_ascii=False))
+    print(json.dumps(KIND.schema(), indent=2, ensure_ascii=False))
 
 
 def explain(wanted: str | None) -> None:
-    """Print the description of a key of study files, or of all.
+    """Print the description of a key of files of any kind, or of all keys of study files.
 
-    Raises `StudyError` for one that there is not.
+    Raises `StudyError` for an unknown key.
     """
-    keys = keys_of(study_schema())
+    keys = keys_of_files()
     if wanted is None:
-        print("\n".join(_table(keys)))
+        others = dict.fromkeys(key.section_name for key in keys if KIND.plural not in key.files)
+        print("\n".join(_table([key for key in keys if KIND.plural in key.files])))
+        print(
+            "\n".join(
+                ["", *_wrap_text(f"Sections of other files, as in inerter explain signal: {', '.join(others)}", "")]
+            )
+        )
         return
-    if other := _other_kind(wanted, keys):
-        raise StudyError(f"{quote_value(wanted)} is a key of {other.plural}, for: inerter {other.command}.")
     told = [list(_describe_key(key, keys)) for key in find_keys(keys, wanted)]
     told += [list(_row(what, wanted, rows[wanted])) for what, rows in _words().items() if wanted in rows]
     if not told:
@@ -55,23 +59,19 @@ def _words() -> dict[str, Mapping[str, Any]]:
     return {**_ROWS, "index": {name: INDICES[symbol] for name, symbol in index_names().items()}}
 
 
-def _other_kind(wanted: str, keys: Sequence[Key]) -> FileKind | None:
-    """The kind of files that alone has the section of a key; None if study files have it too."""
-    section = wanted.partition(".")[0]
-    return None if any(key.place == section for key in keys) else kind_with(section)
-
-
 def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     known = (
         [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
     )
-    return f"Unknown key {quote_value(wanted)} of study files.{nearest(wanted, known)} All keys: inerter explain"
+    return f"Unknown key {quote_value(wanted)}.{nearest(wanted, known)} All keys: inerter explain"
 
 
 def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:
     """Lines on a key, and on the keys that it holds if it is a section."""
     where = f"{key.place} ({key.of})" if key.of else key.place
     yield from _wrap_text(f"{where}: {key.sentence}", "")
+    if KIND.plural not in key.files:
+        yield from _wrap_text(f"in       {format_list(key.files)}")
     if key.unit:
         others = f", or another of its kind such as {' or '.join(key.other_units[:2])}" if key.other_units else ""
         yield from _wrap_text(f"unit     {key.unit}{others}")
@@ -115,7 +115,7 @@ def _table(keys: Sequence[Key]) -> Iterator[str]:
 
 def _by_model(keys: Sequence[Key]) -> str:
     """Sentences of a key that several models have, each with its model."""
-    return " ".join(f"{key.of}: {key.sentence}" for key in keys)
+    return " ".join(dict.fromkeys(f"{key.of}: {key.sentence}" for key in keys))
 
 
 def _wrap_text(text: str, indent: str = "  ") -> list[str]:

@@ -199,17 +199,19 @@ def new(
 
 @app.command(
     help_epilogue="""Examples:
-  inerter explain                      all keys
+  inerter explain                      all keys of study files
   inerter explain road.speed
-  inerter explain sweep"""
+  inerter explain sweep
+  inerter explain simulation           keys of a section of other files"""
 )
 def explain(key: str | None = None, /) -> None:
-    """Show the meaning, unit, default and an example of a key of study files.
+    """Show the meaning, unit, default and an example of a key of files.
 
     Parameters
     ----------
     key
-        A key such as road.speed, its last part, a section such as road, or a name such as J1. Default: all keys.
+        A key such as road.speed, its last part, a section such as road, or a name such as J1.
+        Default: all keys of study files.
     """
     from inerter.cli.describing import explain as command
 

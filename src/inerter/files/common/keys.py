@@ -1,4 +1,4 @@
-"""The keys of a kind of file, each with what its JSON Schema says of it."""
+"""The keys of files, each with what the JSON Schema of its kind says of it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from inerter.files.common.kinds import kinds
 from inerter.files.common.schema import INSTEAD, UNIT, USUAL
+from inerter.registry import cache_until_registration
 
 ANY_NAME = "NAME"  # stands in a place for a name of the author's own
 _DECIDES = ("model", "kind")  # keys whose value decides which others there are
@@ -27,11 +29,17 @@ class Key:
     section: bool = False  # whether it holds other keys
     repeated: bool = False  # whether it is a section that may occur several times, [[place]]
     of: str = ""  # the model or kind that has it, where not all have
+    files: tuple[str, ...] = ()  # kinds of files that have its section
 
     @property
     def name(self) -> str:
         """The last part of its place."""
         return self.place.rpartition(".")[2]
+
+    @property
+    def section_name(self) -> str:
+        """The first part of its place."""
+        return self.place.partition(".")[0]
 
     @property
     def other_units(self) -> tuple[str, ...]:
@@ -42,6 +50,22 @@ class Key:
 def keys_of(schema: Mapping[str, Any]) -> list[Key]:
     """Keys in a JSON Schema of a file that have a sentence, sections before their keys."""
     return [key for key in _below(schema, "") if key.sentence]
+
+
+@cache_until_registration
+def keys_of_files() -> tuple[Key, ...]:
+    """Keys of all kinds of files; of a section that several have, those of the first, which is that of study files."""
+    found: list[Key] = []
+    every = {kind.plural: keys_of(kind.schema()) for kind in kinds()}
+    for keys in every.values():
+        known = {key.section_name for key in found}
+        for key in keys:
+            if key.section_name not in known:
+                files = (
+                    plural for plural, others in every.items() if any(one.place == key.section_name for one in others)
+                )
+                found.append(replace(key, files=tuple(files)))
+    return tuple(found)
 
 
 def below(keys: Iterable[Key], section: Key) -> list[Key]:
@@ -56,15 +80,16 @@ def find_keys(keys: Iterable[Key], wanted: str) -> list[Key]:
 
 
 def _merge_equal_keys(keys: Iterable[Key]) -> list[Key]:
-    """Keys of several models as one where they say the same."""
+    """Keys of several models, or in several units, as one where they say the same."""
     alike: dict[tuple[str, ...], list[Key]] = {}
     for key in keys:
-        alike.setdefault((key.place, key.sentence, key.unit), []).append(key)
+        alike.setdefault((key.place, key.sentence), []).append(key)
     return [
         replace(
             same[0],
             of=", ".join(dict.fromkeys(key.of for key in same if key.of)),
-            words=tuple(word for key in same for word in key.words),
+            unit=" or ".join(dict.fromkeys(key.unit for key in same if key.unit)),
+            words=tuple(dict.fromkeys(word for key in same for word in key.words)),
         )
         for same in alike.values()
     ]

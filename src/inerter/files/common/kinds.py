@@ -12,6 +12,7 @@ from shlex import quote
 from typing import Any
 
 from inerter import files
+from inerter.files.common.schema import DIALECT
 
 DEFAULT = "run"  # the command of the kind that a file without any known section is taken for
 
@@ -21,13 +22,16 @@ class FileKind:
     """Name of a kind of file, the command that reads it, and the sections that identify it.
 
     The module `checking` of its `folder` has `check_lines(tables, path)`: sentences about a file that the command
-    accepts, from its tables. It raises the `StudyError` with which the command would refuse it.
+    accepts, from its tables. It raises the `StudyError` with which the command would refuse it. The module `sections`
+    has the function of the name `codec`.
     """
 
     plural: str
     command: str
     sections: tuple[str, ...]
     folder: str  # the package
+    codec: str  # name of the function in its module `sections` that returns the codec of the whole file
+    about: str  # a sentence
     usage: str = "{file}"  # what follows the command, where {file} is the path of a file
 
     @property
@@ -44,12 +48,19 @@ class FileKind:
         lines: Iterable[str] = import_module(f"{self.folder}.checking").check_lines(tables, path)
         return lines
 
+    def schema(self) -> dict[str, Any]:
+        """JSON Schema (2020-12) of a file of this kind, with what other distributions add."""
+        table = getattr(import_module(f"{self.folder}.sections"), self.codec)().schema()
+        title = f"A {self.singular} of inerter"
+        return {"$schema": DIALECT, "title": title, **table, "description": self.about}
+
 
 @cache
 def kinds() -> tuple[FileKind, ...]:
-    """All kinds of files."""
+    """All kinds of files, study files first."""
     folders = (import_module(f"{files.__name__}.{module.name}") for module in iter_modules(files.__path__))
-    return tuple(folder.KIND for folder in folders if hasattr(folder, "KIND"))
+    found = (folder.KIND for folder in folders if hasattr(folder, "KIND"))
+    return tuple(sorted(found, key=lambda kind: kind.command != DEFAULT))
 
 
 def kind_with(section: str) -> FileKind | None:
@@ -59,7 +70,7 @@ def kind_with(section: str) -> FileKind | None:
 
 def kind_of(tables: Mapping[str, Any]) -> FileKind:
     """Kind of file with the largest share of its sections in `tables`; a study file if none is present."""
-    return max(kinds(), key=lambda kind: (_share(kind, tables), kind.command == DEFAULT))
+    return max(kinds(), key=lambda kind: _share(kind, tables))
 
 
 def mistaken_kinds(tables: Mapping[str, Any], keys: Iterable[str]) -> tuple[FileKind, FileKind] | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -57,11 +57,6 @@ def words_schema(words: Iterable[str]) -> dict[str, Any]:
 def list_schema(items: dict[str, Any]) -> dict[str, Any]:
     """A list of at least one, none of them twice."""
     return {"type": "array", "items": items, "minItems": 1, "uniqueItems": True}
-
-
-def json_schema(table: Mapping[str, Any], title: str, description: str) -> dict[str, Any]:
-    """JSON Schema (2020-12) of a kind of file, of which `table` is the schema of the whole table."""
-    return {"$schema": DIALECT, "title": title, **table, "description": description}
 
 
 def example_value(example: str) -> Any:

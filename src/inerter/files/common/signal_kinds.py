@@ -38,6 +38,7 @@ class SignalKey(NamedTuple):
     example: str
     default: Any = REQUIRED
     codec: Callable[[str], Codec] = positive  # given the unit: what a value may be
+    sentence: str = ""
 
     def of(self, unit: str) -> SignalKey:
         """Key of a signal in `unit`, with the placeholders of its unit and example replaced."""
@@ -49,12 +50,16 @@ def _plain(codec: Codec) -> Callable[[str], Codec]:
     return lambda unit: codec
 
 
-def _size(name: str) -> SignalKey:
-    return SignalKey("{unit}", f'{name} = "{{size}}"', codec=any_quantity)
+def _size(name: str, sentence: str) -> SignalKey:
+    return SignalKey("{unit}", f'{name} = "{{size}}"', codec=any_quantity, sentence=sentence)
 
 
-def _frequency(name: str, value: str, default: Any = REQUIRED) -> SignalKey:
-    return SignalKey("Hz", f'{name} = "{value} Hz"', default)
+def _lowest(value: str, default: Any = REQUIRED) -> SignalKey:
+    return SignalKey("Hz", f'lowest = "{value} Hz"', default, sentence="Lowest frequency.")
+
+
+def _highest(value: str, default: Any = REQUIRED) -> SignalKey:
+    return SignalKey("Hz", f'highest = "{value} Hz"', default, sentence="Highest frequency.")
 
 
 def _escape_braces(example: str) -> str:
@@ -62,12 +67,14 @@ def _escape_braces(example: str) -> str:
     return example.replace("{", "{{").replace("}", "}}")
 
 
-_SEED = SignalKey("", "seed = 0", 0, lambda unit: whole(0, 2**63 - 1))
-_FILE = SignalKey("", 'file = "road.csv"', codec=_plain(TEXT))
+_SEED = SignalKey("", "seed = 0", 0, _plain(whole(0, 2**63 - 1)), "Seed of the random numbers.")
+_FILE = SignalKey("", 'file = "road.csv"', codec=_plain(TEXT), sentence="File of the samples.")
+_AMPLITUDE = _size("amplitude", "Amplitude.")
+_HEIGHT = _size("height", "Height.")
 _WAVE = {
-    "amplitude": _size("amplitude"),
-    "frequency": _frequency("frequency", "3"),
-    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, codec=any_quantity),
+    "amplitude": _AMPLITUDE,
+    "frequency": SignalKey("Hz", 'frequency = "3 Hz"', sentence="Frequency."),
+    "phase": SignalKey("rad", 'phase = "90 deg"', 0.0, any_quantity, "Phase at time zero."),
 }
 
 
@@ -108,7 +115,7 @@ _OWN = (
     SignalKind(
         "multisine",
         random_road,
-        {"seed": _SEED, "lowest": _frequency("lowest", "0.1", 0.1), "highest": _frequency("highest", "1000", 1000.0)},
+        {"seed": _SEED, "lowest": _lowest("0.1", 0.1), "highest": _highest("1000", 1000.0)},
         given=("road",),
         needs=("speed", "roughness"),
         of_roads=True,
@@ -119,9 +126,9 @@ _OWN = (
         flat_multisine,
         {
             "seed": _SEED,
-            "rms": SignalKey("{unit}", 'rms = "{size}"'),
-            "lowest": _frequency("lowest", "0.1"),
-            "highest": _frequency("highest", "20"),
+            "rms": SignalKey("{unit}", 'rms = "{size}"', sentence="R.m.s. value of the whole signal."),
+            "lowest": _lowest("0.1"),
+            "highest": _highest("20"),
         },
     ),
     SignalKind("sine", sine, _WAVE),
@@ -130,22 +137,24 @@ _OWN = (
         "chirp",
         chirp,
         {
-            "amplitude": _size("amplitude"),
-            "lowest": _frequency("lowest", "0.5"),
-            "highest": _frequency("highest", "20"),
-            "duration": SignalKey("s", 'duration = "10 s"'),
+            "amplitude": _AMPLITUDE,
+            "lowest": _lowest("0.5"),
+            "highest": _highest("20"),
+            "duration": SignalKey("s", 'duration = "10 s"', sentence="Time from the lowest to the highest frequency."),
         },
     ),
     SignalKind(
-        "step", step, {"height": _size("height"), "time": SignalKey("s", 'time = "1 s"', 0.0, codec=any_quantity)}
+        "step",
+        step,
+        {"height": _HEIGHT, "time": SignalKey("s", 'time = "1 s"', 0.0, any_quantity, "Time of the step.")},
     ),
     SignalKind(
         "bump",
         bump,
         {
-            "height": _size("height"),
-            "length": SignalKey("m", 'length = "1 m"'),
-            "start": SignalKey("s", 'start = "0.5 s"', 0.0, codec=any_quantity),
+            "height": _HEIGHT,
+            "length": SignalKey("m", 'length = "1 m"', sentence="Length of the bump."),
+            "start": SignalKey("s", 'start = "0.5 s"', 0.0, any_quantity, "Time at which the bump begins."),
         },
         needs=("speed",),
         of_roads=True,
@@ -155,9 +164,11 @@ _OWN = (
         held_noise,
         {
             "seed": _SEED,
-            "power": SignalKey("{square}/Hz", 'power = "1e-8 {square}/Hz"'),
-            "interval": SignalKey("s", 'interval = "1 ms"', 1e-3),
-            "duration": SignalKey("s", 'duration = "100 s"', 100.0),
+            "power": SignalKey(
+                "{square}/Hz", 'power = "1e-8 {square}/Hz"', sentence="Two-sided density at low frequencies."
+            ),
+            "interval": SignalKey("s", 'interval = "1 ms"', 1e-3, sentence="Time for which each sample is held."),
+            "duration": SignalKey("s", 'duration = "100 s"', 100.0, sentence="Period after which the signal repeats."),
         },
     ),
     SignalKind(
@@ -165,8 +176,10 @@ _OWN = (
         lambda file, **others: read_signal(path=file, **others),
         {
             "file": _FILE,
-            "hold": SignalKey("", 'hold = "cubic"', "cubic", _plain(word("a hold", HOLDS))),
-            "periodic": SignalKey("", "periodic = true", False, _plain(YES_OR_NO)),
+            "hold": SignalKey(
+                "", 'hold = "cubic"', "cubic", _plain(word("a hold", HOLDS)), "Interpolation between samples."
+            ),
+            "periodic": SignalKey("", "periodic = true", False, _plain(YES_OR_NO), "Whether the samples repeat."),
         },
         given=("speed", "unit"),
     ),
@@ -175,20 +188,29 @@ _OWN = (
         _measured_road,
         {
             "file": _FILE,
-            "track": SignalKey("", 'track = "left"', "", _plain(word("a side", (*TRACKS, BOTH)))),
+            "track": SignalKey(
+                "", 'track = "left"', "", _plain(word("a side", (*TRACKS, BOTH))), "Track of a profile with two tracks."
+            ),
             "columns": SignalKey(
                 "",
                 _escape_braces(profiles.COLUMNS_EXAMPLE),
                 None,
                 _plain(Scalar(profiles.columns, lambda: profiles.COLUMNS_SCHEMA)),
+                "Columns of a profile, by name or number from 0, if they are not recognised.",
             ),
             "units": SignalKey(
                 "",
                 _escape_braces(profiles.UNITS_EXAMPLE),
                 None,
                 _plain(Scalar(profiles.units, lambda: profiles.UNITS_SCHEMA)),
+                "Units of a profile whose table has none.",
             ),
-            "interval": SignalKey("m", profiles.SPACING_EXAMPLE, None),
+            "interval": SignalKey(
+                "m",
+                profiles.SPACING_EXAMPLE,
+                None,
+                sentence="Distance between rows of a profile without a distance column.",
+            ),
         },
         needs=("speed",),
         of_roads=True,

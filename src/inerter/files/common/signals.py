@@ -118,6 +118,11 @@ def _table(kind: str, unit: str) -> TableCodec:
         return {"kind": kind, **values}
 
     keys = {name: one.of(unit) for name, one in SIGNALS[kind].keys.items()}
-    own = [Declaration(one.codec(one.unit), "", one.example, one.default, name, name) for name, one in keys.items()]
-    moved = Declaration(TEXT, "", "", None, "input", "input")
+    own = [
+        Declaration(one.codec(one.unit), one.sentence, one.example, one.default, name, name)
+        for name, one in keys.items()
+    ]
+    moved = Declaration(
+        TEXT, "Input that has the signal; default: road, displacement or force.", "", None, "input", "input"
+    )
     return TableCodec((*own, moved), make, tag=("kind", kind, "The kind of signal."))

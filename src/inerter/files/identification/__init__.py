@@ -2,4 +2,12 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("configurations", "identify", ("record", "model", "fit"), __name__, "RECORD --config {file}")
+KIND = FileKind(
+    "configurations",
+    "identify",
+    ("record", "model", "fit"),
+    __name__,
+    "identification_codec",
+    "Reading of records, model of the device and settings of the fit. Every quantity is text with its unit.",
+    "RECORD --config {file}",
+)

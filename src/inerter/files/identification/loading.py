@@ -13,7 +13,7 @@ from inerter.files.common.problem import EntryError, Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import read_tables, value_of
-from inerter.files.identification.sections import AS_RECORDED, CHOOSE, IDENTIFICATION, RecordRequest
+from inerter.files.identification.sections import AS_RECORDED, CHOOSE, RecordRequest, identification_codec
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.parser import names, network
@@ -71,7 +71,7 @@ def load_identification(path: str | Path) -> IdentificationRequest:
 
 def identification_of(tables: Mapping[str, Any], path: Path) -> IdentificationRequest:
     """Configuration from its tables; `path` is used in messages only."""
-    found = value_of(IDENTIFICATION, tables, path)
+    found = value_of(identification_codec(), tables, path)
     request = IdentificationRequest(
         title=found["title"],
         record=found["record"],

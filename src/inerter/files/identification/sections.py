@@ -33,6 +33,7 @@ from inerter.files.common.suggest import nearest
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
 from inerter.records.uncertain import Uncertain, parse_uncertain
+from inerter.registry import cache_until_registration
 from inerter.units import parse_quantity, quote_value
 
 NO_UNITS: dict[str, str] = {}
@@ -159,32 +160,41 @@ def _record(**values: Any) -> RecordRequest:
 
 
 _CHANNELS = tuple(section(role, _CHANNEL, f"The channel of the {role}.", default=None) for role in ROLES)
-IDENTIFICATION = TableCodec(
-    (
-        section("title", TEXT, default=None),
-        section(
-            "record",
-            TableCodec((*_CHANNELS, *keys_in(RecordRequest)), _record),
-            example='a section [record] with force = "Load"',
-            default=AS_RECORDED,
-        ),
-        section(
-            "model",
-            table_of(ModelRequest),
-            example='a section [model] with name = "ball-screw"',
-            default=ModelRequest(),
-        ),
-        section(
-            "elements",
-            elements_codec(free=True, least=0),
-            example='a section [elements] with lines such as b = "113 kg"',
-            default=NO_ELEMENTS,
-        ),
-        section(
-            "fit",
-            table_of(FitSettings, make=without_none),
-            example="a section [fit] with seed = 0",
-            default=without_none(**vars(FitSettings())),
-        ),
+
+
+@cache_until_registration
+def identification_codec() -> TableCodec:
+    """The whole file, as a dictionary by its sections."""
+    return TableCodec(
+        (
+            section("title", TEXT, "Title of the report; the name of the record if left out.", default=None),
+            section(
+                "record",
+                TableCodec((*_CHANNELS, *keys_in(RecordRequest)), _record),
+                "Channels, units and preparation of the records.",
+                'a section [record] with force = "Load"',
+                default=AS_RECORDED,
+            ),
+            section(
+                "model",
+                table_of(ModelRequest),
+                "The device: one of the catalogue, or a network of the elements.",
+                'a section [model] with name = "ball-screw"',
+                default=ModelRequest(),
+            ),
+            section(
+                "elements",
+                elements_codec(free=True, least=0),
+                "Elements of the device, by names that you choose. The unit determines the kind.",
+                'a section [elements] with lines such as b = "113 kg"',
+                default=NO_ELEMENTS,
+            ),
+            section(
+                "fit",
+                table_of(FitSettings, make=without_none),
+                "Settings of the fit.",
+                "a section [fit] with seed = 0",
+                default=without_none(**vars(FitSettings())),
+            ),
+        )
     )
-)

@@ -2,4 +2,12 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("rig files", "rig", ("rig",), __name__, "{file} -o record.csv")
+KIND = FileKind(
+    "rig files",
+    "rig",
+    ("rig",),
+    __name__,
+    "rig_codec",
+    "A device, a signal and sensors. Every quantity is text with its unit.",
+    "{file} -o record.csv",
+)

@@ -38,16 +38,30 @@ def rig_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections."""
     return TableCodec(
         (
-            section("title", TEXT, default=None),
+            section("title", TEXT, "Title of the record; the name of the file if left out.", default=None),
             section(
-                "elements", elements_codec(free=False), example='a section [elements] with lines such as b = "113 kg"'
+                "elements",
+                elements_codec(free=False),
+                "Elements of the device, by names that you choose. The unit determines the kind.",
+                'a section [elements] with lines such as b = "113 kg"',
             ),
             section(
                 "layouts",
                 layouts_codec(Rig.key),
-                example='a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"',
+                "Networks of the elements: | in parallel, - in series.",
+                'a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"',
             ),
-            section("signal", signal_codec(), example='a section [signal] with kind = "cosine"'),
-            section("rig", table_of(RigSettings, make=without_none), example='a section [rig] with duration = "5 s"'),
+            section(
+                "signal",
+                signal_codec(),
+                "Signal of one input; its kind determines the other keys of this section.",
+                'a section [signal] with kind = "cosine"',
+            ),
+            section(
+                "rig",
+                table_of(RigSettings, make=without_none),
+                "Duration of the measurement, and the sensors.",
+                'a section [rig] with duration = "5 s"',
+            ),
         )
     )

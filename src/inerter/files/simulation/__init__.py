@@ -2,4 +2,11 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("simulation files", "simulate", ("simulation", "signal"), __name__)
+KIND = FileKind(
+    "simulation files",
+    "simulate",
+    ("simulation", "signal"),
+    __name__,
+    "simulation_codec",
+    "Vehicle or rig, elements, layouts and a signal. Every quantity is text with its unit.",
+)

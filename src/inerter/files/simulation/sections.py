@@ -48,27 +48,43 @@ def simulation_codec() -> TableCodec:
     *others, last = map(quote_value, models())
     return TableCodec(
         (
-            section("title", TEXT, default=None),
+            section("title", TEXT, "Title of the summary; the name of the file if left out.", default=None),
             section(
                 "vehicle",
                 vehicle_codec(models(), one_of("a vehicle model", models()), free=False),
+                "Vehicle model, or a rig; it determines the other keys of this section.",
                 example=f"a section [vehicle] with model = {', '.join(others)} or {last}",
             ),
             section(
                 "road",
                 road_codec(rough=False),
-                example='a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"',
+                "Road and speed.",
+                'a section [road] with speed = "25 m/s" and roughness = "5e-7 m^3/cycle"',
                 default=None,
             ),
             section(
-                "elements", elements_codec(free=False), example='a section [elements] with lines such as k = "120 kN/m"'
+                "elements",
+                elements_codec(free=False),
+                "Elements of the struts, by names that you choose. The unit determines the kind.",
+                'a section [elements] with lines such as k = "120 kN/m"',
             ),
-            section("layouts", layouts_codec(), example='a section [layouts] with lines such as S1 = "k | c"'),
-            section("signal", signal_codec(), example='a section [signal] with kind = "multisine"'),
+            section(
+                "layouts",
+                layouts_codec(),
+                "Networks of the elements: | in parallel, - in series.",
+                'a section [layouts] with lines such as S1 = "k | c"',
+            ),
+            section(
+                "signal",
+                signal_codec(),
+                "Signal of one input; its kind determines the other keys of this section.",
+                'a section [signal] with kind = "multisine"',
+            ),
             section(
                 "simulation",
                 table_of(SimulationSettings, make=dict),
-                example='a section [simulation] with duration = "10 s"',
+                "Settings of the integration, and of the samples that are kept.",
+                'a section [simulation] with duration = "10 s"',
             ),
         )
     )

@@ -2,4 +2,11 @@
 
 from inerter.files.common.kinds import FileKind
 
-KIND = FileKind("study files", "run", ("study",), __name__)
+KIND = FileKind(
+    "study files",
+    "run",
+    ("study",),
+    __name__,
+    "study_codec",
+    "Vehicle, road, elements, layouts and indices. Every quantity is text with its unit.",
+)

@@ -13,7 +13,7 @@ from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.common.vehicle_tables import MECHANISM
-from inerter.files.study.schema import study_schema
+from inerter.files.study import KIND
 from inerter.files.study.sections import judged_models
 from inerter.indices.registry import INDICES, make_index
 from inerter.methods.registry import DEFAULT
@@ -137,7 +137,7 @@ def _settings(kind: type[VehicleModel]) -> Iterator[str]:
     asked = possible[:_MOST_ASKED]
     titles = ", ".join(f"{symbol} {INDICES[symbol].title}" for symbol in asked)
     given = {"indices": asked, "optimise": DEFAULT, "baseline": next(iter(_LAYOUTS))}
-    keys = [key for key in keys_of(study_schema()) if key.place.startswith("study.") and key.place.count(".") == 1]
+    keys = [key for key in keys_of(KIND.schema()) if key.place.startswith("study.") and key.place.count(".") == 1]
     sentences = {key.name: key.sentence for key in keys}
     yield from ("[study]", f"# {titles}")
     for name, value in given.items():

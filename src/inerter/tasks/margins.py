@@ -5,7 +5,6 @@ Each is computed by a method that models what it is about; where the given one d
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, isnan, nan
@@ -129,9 +128,8 @@ class Margins:
 class _Trial:
     """Element whose break-even value is computed, in a design that has it."""
 
-    parameter: str
+    parameter: str  # its label; that of an element of a real inerter is a word
     words: str
-    brief: str
     design: Vehicle
     is_present: bool
 
@@ -139,12 +137,6 @@ class _Trial:
     def element(self) -> Element:
         """The element, or the first of several with its label."""
         return next(one for one in self.design.mechanism().strut_elements() if one.label == self.parameter)
-
-    def in_words(self, message: str) -> str:
-        """Message in which an element of a real inerter has its words in place of its label, which is in no study."""
-        if self.is_present:
-            return message
-        return re.sub(rf"(?:{self.element.key} )?'?\b{re.escape(self.parameter)}\b'?", self.brief, message, flags=re.I)
 
 
 def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: None) -> Margins:
@@ -184,7 +176,7 @@ def _trials(asked: MarginRequest) -> Iterator[_Trial]:
     labels = [label for label, e in own.items() if e.may_vanish or label in compliant or label in budgets]
     for label in labels:
         what = "stiffness" if label in compliant else own[label].key
-        yield _Trial(label, f"{what} {label}", label, asked.design, is_present=True)
+        yield _Trial(label, f"{what} {label}", asked.design, is_present=True)
     present = {own[label].key for label in labels}
     inerters = [label for label, element in own.items() if isinstance(element, Inerter)]
     if not inerters:
@@ -210,7 +202,7 @@ def _hypothetical(
     join: Callable[[Element, Element], Network],
 ) -> _Trial:
     """Trial with an element of a real inerter joined to each inerter of the struts."""
-    name = f"inerter_{element.symbol}"
+    name = what
     while name in own:
         name += "_"
     new = element.of(element.value, name)
@@ -219,7 +211,7 @@ def _hypothetical(
         return join(part, new) if isinstance(part, Inerter) and part.label in own else part
 
     design = with_elements(asked.design, change)
-    return _Trial(name, f"{what} of {of}", what, design, is_present=False)
+    return _Trial(name, f"{what} of {of}", design, is_present=False)
 
 
 def compliant_springs(network: Network) -> set[str]:
@@ -254,7 +246,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
             trial.design, asked.baseline, study.over_conditions(asked.index), trial.parameter, by
         )
     except FAILURES as error:
-        message = trial.in_words(str(error)).rstrip(".")
+        message = str(error).rstrip(".")
         sentence = f"{capital(trial.words)}: break-even value not computed ({message})."
         return BreakEvenMargin(
             trial.parameter,
@@ -270,13 +262,13 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
             "",
             sentence,
         )
-    known, short, message = isfinite(found.value), "", trial.in_words(found.status.message)
+    known, short, message = isfinite(found.value), "", found.status.message
     who = f"{asked.layout} is better than {asked.baseline_layout}"
     if known:
         ends = [crossing.value for crossing in found.crossings]
         scatter, bound = found.standard_error, found.error_bound
         end = range_text(found.value, found.unit, scatter, bound, ends, at_most=element.may_vanish)
-        short = f"{trial.brief} {end}"
+        short = f"{trial.parameter} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
     else:
         end = message.replace("the design is better", who).rstrip(".")

@@ -13,7 +13,7 @@ from itertools import zip_longest
 
 import numpy as np
 
-from inerter.systems.polynomials import Polynomial, positive_roots, trim
+from inerter.systems.polynomials import Polynomial, derivative, positive_roots, trim
 
 DIGITS = 100
 _FINE = Decimal("1e-70")  # relative size below which a difference is rounding
@@ -44,14 +44,14 @@ class Immittance:
         """Factor a and the rest of a s + rest."""
         a = self.top[-1] / self.bottom[-1]
         rest = self._difference(self.top, [ZERO, *(a * c for c in self.bottom)])
-        return a, self.over(_trim(rest[:-1]), self.bottom)
+        return a, self.over(trim(rest[:-1]), self.bottom)
 
     def without_pole_at_zero(self) -> tuple[Decimal, Immittance]:
         """Factor a and the rest of a / s + rest."""
         bottom = self.bottom[1:]
         a = self.top[0] / bottom[0]
         rest = self._difference(self.top, [a * c for c in bottom])
-        return a, self.over(_trim(rest[1:]), bottom)
+        return a, self.over(trim(rest[1:]), bottom)
 
     def without_pole_at(self, x: Decimal) -> tuple[Decimal, Immittance]:
         """Factor a and the rest of a s / (s^2 + x) + rest."""
@@ -66,7 +66,7 @@ class Immittance:
         rest = self._difference(self.top, [a * c for c in self.bottom])
         if at_zero:
             rest[0] = ZERO
-        return self.over(_trim(rest[:-1] if at_infinity else rest), self.bottom)
+        return self.over(trim(rest[:-1] if at_infinity else rest), self.bottom)
 
     def real_part(self) -> Numbers:
         """Re top(j w) bottom(-j w) as a polynomial in x = w^2."""
@@ -75,7 +75,7 @@ class Immittance:
             for j, b in enumerate(self.bottom):
                 if (i + j) % 2 == 0:
                     terms[(i + j) // 2].append(-a * b if (i - j) % 4 else a * b)
-        return _trim([_sum(each, self.tiny) for each in terms])
+        return trim([_sum(each, self.tiny) for each in terms])
 
     def square(self) -> Numbers:
         """|bottom(j w)|^2 as a polynomial in x = w^2."""
@@ -84,8 +84,8 @@ class Immittance:
     def smallest_real_part(self) -> tuple[Decimal, Decimal | None]:
         """The minimum of the real part on the imaginary axis and its x = w^2; None if that is infinite."""
         real, square = self.real_part(), self.square()
-        up, down = _multiply(_derivative(real), square), _multiply(real, _derivative(square))
-        slope = _trim([_sum((a, -b), _FINE) for a, b in zip_longest(up, down, fillvalue=ZERO)])
+        up, down = _multiply(derivative(real), square), _multiply(real, derivative(square))
+        slope = trim([_sum((a, -b), _FINE) for a, b in zip_longest(up, down, fillvalue=ZERO)])
         found: list[tuple[Decimal, Decimal | None]] = [(real[0] / square[0], ZERO)]
         found.append((real[-1] / square[-1] if len(real) == len(square) else ZERO, None))
         least = min(found, key=lambda each: each[0])
@@ -98,7 +98,7 @@ class Immittance:
     def touching(self) -> list[Decimal]:
         """All x = w^2 > 0 at which the real part, or the denominator, touches zero on the imaginary axis."""
         real = self.real_part()
-        return [x for x in roots(_derivative(real)) if _is_tiny(real, x, self.tiny)]
+        return [x for x in roots(derivative(real)) if _is_tiny(real, x, self.tiny)]
 
     def has_pole_at(self, x: Decimal) -> bool:
         """Whether there are poles at the roots of s^2 + x."""
@@ -136,7 +136,7 @@ class Immittance:
             others = [self.bottom[-1]]
             for other in factors[:i] + factors[i + 1 :]:
                 others = _multiply(others, other)
-            parts.append(self.over(_trim(_quotient_modulo(self.top, others, factor)), factor))
+            parts.append(self.over(trim(_quotient_modulo(self.top, others, factor)), factor))
         return parts
 
 
@@ -163,7 +163,7 @@ def _refine(p: Numbers, low: Decimal, high: Decimal) -> Decimal:
     """The one root of p between `low` and `high`: Newton's method, with bisection where it leaves the interval."""
     if low == high:
         return low
-    slope = _derivative(p)
+    slope = derivative(p)
     rises = evaluate(p, high) > evaluate(p, low)
     x = (low + high) / 2
     for _ in range(_STEPS):
@@ -233,7 +233,7 @@ def _quotient_modulo(p: Numbers, q: Numbers, factor: Numbers) -> Numbers:
 
 def _only_positive_root(p: Numbers) -> Decimal:
     """The positive root of n(s) - slope s d(s): n(s) / (s d(s)) falls where n/d is positive real."""
-    found = roots(_trim(p))
+    found = roots(trim(p))
     if len(found) != 1:
         raise ArithmeticError(f"{len(found)} positive roots instead of one")
     return found[0]
@@ -266,17 +266,6 @@ def _sum(terms: Iterable[Decimal], tiny: Decimal) -> Decimal:
     return ZERO if abs(total) <= tiny * sum((abs(term) for term in terms), ZERO) else total
 
 
-def _trim(p: Numbers) -> Numbers:
-    size = len(p)
-    while size and not p[size - 1]:
-        size -= 1
-    return p[:size]
-
-
-def _derivative(p: Numbers) -> Numbers:
-    return [i * c for i, c in enumerate(p)][1:]
-
-
 def _multiply(p: Numbers, q: Numbers) -> Numbers:
     result = [ZERO] * max(len(p) + len(q) - 1, 0)
     for i, a in enumerate(p):
@@ -291,7 +280,7 @@ def _divide_by_quadratic(p: Numbers, x: Decimal) -> Numbers:
     for i in range(len(result) - 1, -1, -1):
         above = x * result[i + 2] if i + 2 < len(result) else ZERO
         result[i] = _sum((p[i + 2], -above), _FINE)
-    return _trim(result)
+    return trim(result)
 
 
 def _divide_by_root(p: Numbers, root: Decimal) -> Numbers:
@@ -300,4 +289,4 @@ def _divide_by_root(p: Numbers, root: Decimal) -> Numbers:
     for i in range(len(result) - 1, -1, -1):
         above = root * result[i + 1] if i + 1 < len(result) else ZERO
         result[i] = _sum((p[i + 1], above), _FINE)
-    return _trim(result)
+    return trim(result)

@@ -8,16 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
 from math import gcd as common
+from typing import TypeVar
 
 Polynomial = list[int]
+Coefficient = TypeVar("Coefficient", int, Decimal)
 _PRIME = (1 << 61) - 1
 _FINE = Fraction(1, 1 << 56)  # of a root, to which an interval is halved
 
 
-def trim(p: Sequence[int]) -> Polynomial:
+def trim(p: Sequence[Coefficient]) -> list[Coefficient]:
     """`p` without leading zeros; the zero polynomial is empty."""
     size = len(p)
     while size and p[size - 1] == 0:
@@ -52,7 +55,7 @@ def scale_by(p: Polynomial, factor: int) -> Polynomial:
     return trim([factor * c for c in p])
 
 
-def derivative(p: Polynomial) -> Polynomial:
+def derivative(p: Sequence[Coefficient]) -> list[Coefficient]:
     """Derivative of a polynomial."""
     return [i * c for i, c in enumerate(p)][1:]
 

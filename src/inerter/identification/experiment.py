@@ -29,6 +29,7 @@ MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours witho
 _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
 _AT_REST = 0.02  # of the largest velocity
+_END = 16  # samples next to an end, at least, where filter and spline of the motion rest on its continuation
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2
 _BARELY = 1.0  # largest pole times duration of a free motion that hardly changes over a record, as an offset does not
 
@@ -178,7 +179,7 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
             f"lead: the part discarded at the start, {part}, must be non-negative and shorter than the record, {whole}."
         )
     kept[: round(wait / interval)] = False
-    edge = min(round(1.0 / (motion.bandwidth * interval)), count // 10)
+    edge = min(max(round(1.0 / (motion.bandwidth * interval)), _END), count // 10)
     kept[count - edge :] = False
     if not at_rest or wait > 0.0:
         kept[:edge] = False

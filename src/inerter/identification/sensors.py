@@ -102,8 +102,10 @@ def encoder_noise(experiment: Experiment) -> float:
     motion, record = experiment.motion, experiment.record
     if record.displacement_noise is not None:
         return record.displacement_noise
-    taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept])
-    return taken / math.sqrt(float(np.mean((1.0 - _gains_of(experiment)) ** 2)))
+    removed = (1.0 - _gains_of(experiment)) ** 2
+    independent = float(np.mean(removed) ** 2 / np.mean(removed**2))
+    taken = _usual_rms((record.displacement - motion.displacement)[experiment.kept], independent)
+    return taken / math.sqrt(float(np.mean(removed)))
 
 
 def passed_share(experiment: Experiment) -> float:
@@ -139,13 +141,14 @@ def _between_steps(experiment: Experiment, moved: Matrix, step: float, random: n
     return np.where(start, step * common.uniform(-0.5, 0.5), np.where(smoothed, passed, 0.0))
 
 
-def _usual_rms(values: Matrix) -> float:
-    """R.m.s. of most blocks of time, without a few exceptional ones.
+def _usual_rms(values: Matrix, independent: float) -> float:
+    """R.m.s. of most blocks of time, without a few exceptional ones; a share `independent` of the values counts.
 
-    The median of few samples' variances would be below their mean.
+    The median of few samples' variances is below their mean, by that of the distribution of chi square.
     """
     blocks = np.array_split(values, max(min(_BLOCKS, values.size // _LONG), 1))
-    return float(np.sqrt(np.median([np.var(block) for block in blocks])))
+    below = (1.0 - 2.0 / (9.0 * max(independent * blocks[0].size, 1.0))) ** 3 if len(blocks) > 2 else 1.0
+    return float(np.sqrt(np.median([np.var(block) for block in blocks]) / below))
 
 
 def periodic_displacement(experiment: Experiment) -> Matrix:

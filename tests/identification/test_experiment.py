@@ -56,3 +56,15 @@ def test_samples_at_the_end_that_rest_on_no_later_ones_are_not_compared(per_peri
     wrong = np.abs(50.0 * experiment.motion.acceleration - force)
     assert np.max(wrong[experiment.kept]) < 0.01 * np.std(force)
     assert np.mean(experiment.kept) > 0.85
+
+
+def test_a_record_that_begins_at_a_turning_point_does_not_begin_at_rest() -> None:
+    """Nor does one that begins in motion; a ramp from rest does, with noise that moves its first samples."""
+    time = np.arange(500) / 100.0
+    share = np.minimum(time / 0.5, 1.0)
+    ramp = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    noise = 2e-7 * np.random.default_rng(0).standard_normal(500)
+    moved = 1e-3 * np.cos(2.0 * np.pi * 3.0 * time) + 4e-4 * np.cos(2.0 * np.pi * 7.0 * time)
+    late = 1e-3 * np.sin(2.0 * np.pi * 3.0 * time)
+    begins = [experiment_of(it.Record(time, x + noise, moved)).kept[0] for x in (moved, late, ramp * late)]
+    assert begins == [False, False, True]

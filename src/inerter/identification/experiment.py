@@ -28,8 +28,9 @@ Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours without better estimates
 _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
-_AT_REST = 0.02  # of the largest velocity
+_AT_REST, _TURNING = 0.02, 0.3  # of the largest velocity and acceleration: a table that is at rest, not turning back
 _END = 16  # samples next to an end, at least, where filter and spline of the motion rest on its continuation
+_CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2
 _BARELY = 1.0  # largest pole times duration of a free motion that hardly changes over a record, as an offset does not
 
@@ -102,6 +103,11 @@ class Experiment:
         height, velocity = _signal(self.motion, _knots_per_interval(self.motion)).sample(within)
         return self.with_motion(height, np.where(time == within, velocity, 0.0))
 
+    def _first_velocity(self) -> Matrix:
+        """The largest velocity of the table in its first period [m/s], since at the first sample it may turn back."""
+        first = self.table.slope[: math.ceil(1.0 / (self.motion.highest * self.record.interval)) + 1]
+        return np.asarray(first[int(np.argmax(np.abs(first[:, 0])))])
+
     def force(self, system: PiecewiseSystem, samples: int | None = None) -> Matrix | None:
         """Load cell force [N] of this device at the first `samples` samples; None if the simulation fails."""
         run = self.run(system, samples)
@@ -112,7 +118,7 @@ class Experiment:
         self.tally.add()
         state = initial_state(system, self.table.value[0], "rest")
         if moving:
-            state = _consistent_velocities(system, state, self.table.slope[0])
+            state = _consistent_velocities(system, state, self._first_velocity())
         count = self.size if samples is None else min(samples, self.size)
         knots = _knots_per_interval(self.motion)
         integration = event_driven.start(system, _truncate(self.table_in(knots), (count - 1) * knots), state)
@@ -148,7 +154,8 @@ def free_motions(experiment: Experiment, system: PiecewiseSystem, samples: int) 
 def experiment_of(record: Record, bandwidth: float | None = None, lead: float | None = None) -> Experiment:
     """Smooth the displacement, and leave out samples at which the load cell is saturated or the motion uncertain.
 
-    `lead` [s] at the start are not compared; by default none if the table starts from rest, else a tenth.
+    `lead` [s] at the start are not compared; by default none if the table starts from rest, else a tenth. A table that
+    turns back at the first sample does not start from rest.
 
     Raises `IdentificationError` for records that are too long, or `RecordError` for uneven ones.
     """
@@ -171,7 +178,7 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
     # A sample next to a clipped one may be clipped too.
     kept = np.convolve(saturated_samples(record), np.ones(3), "same") == 0.0
-    at_rest = abs(motion.velocity[0]) <= _AT_REST * np.abs(motion.velocity).max()
+    at_rest = _begins_at_rest(motion)
     wait = (0.0 if at_rest else 0.1 * record.duration) if lead is None else lead
     if not 0.0 <= wait < record.duration:
         part, whole = format_alike([wait, record.duration], "s")
@@ -188,6 +195,15 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
             f"Only {kept.sum()} samples of {record.source!r} can be used; a fit requires at least 50."
         )
     return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept))
+
+
+def _begins_at_rest(motion: Motion) -> bool:
+    """Whether neither the velocity nor the acceleration says that the table moved before; at a turning point it did."""
+    speed, acceleration = np.abs(motion.velocity), np.abs(motion.acceleration)
+    end = min(_END, acceleration.size // 4)
+    largest = float(acceleration[end : acceleration.size - end].max())
+    turning = max(_TURNING * largest, _CERTAIN * motion.acceleration_noise)
+    return bool(speed[0] <= _AT_REST * speed.max() and acceleration[0] <= turning)
 
 
 def _noise(record: Record) -> float:

@@ -19,5 +19,6 @@ def test_intervals_contain_the_values_with_the_filter_for_which_a_delay_stands()
     fit = it.identify(record, "elastic", starts=8)
     assert fit.status.ok
     for name, truth in {"ks": 1e6, "cs": 2000.0, "b": 100.0}.items():
-        low, high = fit.parameters[name].interval
-        assert low <= truth <= high, name
+        p = fit.parameters[name]
+        assert p.interval[0] <= truth <= p.interval[1], name
+        assert abs(p.best - truth) < 3.0 * p.standard_error, name

@@ -96,7 +96,7 @@ def solve(
     report("errors of the sensors", 0, 1)
     optimum, found = _remove_bias(problem, optimum, found, drawn.bias)
     if asked.delay is None and not adhesion:
-        found = with_filter(problem, optimum, found)
+        optimum, found = with_filter(problem, optimum, found)
     checked = tuple(check_parts(problem.experiments, whole, leads))
     judge = noise_reference(problem, optimum.point, checked, asked.seed)
     if judge is None:

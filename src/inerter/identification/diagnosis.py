@@ -27,7 +27,8 @@ from inerter.identification.recording_faults import faulty_samples, recording_fa
 from inerter.identification.residual_tests import NoiseReference
 from inerter.identification.search import improve
 from inerter.identification.statements.causes import Suspect
-from inerter.networks.elements import Free
+from inerter.networks.elements import Element, Free, Network
+from inerter.networks.transform import map_elements
 from inerter.records.dropouts import find_dropouts, insert_samples
 from inerter.vehicle.rig import Rig
 from inerter.work.progress import counter
@@ -45,6 +46,7 @@ _BESIDE = 30  # samples to either side of dropped ones, where the interpolated m
 _LITTLE = 0.05  # of the detectable size of an unknown: starting value
 _AS_GOOD = 0.02  # of a misfit: difference within which two explanations count as equally good
 _STEP = 0.02  # of the detectable size of an unknown, for differences
+_AT_BOUND, _WIDER = 1e-3, 30.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
 
 
 @dataclass(eq=False)
@@ -54,13 +56,17 @@ class Causes:
     before: NormalisedResidual
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
+    point: Matrix | None = None  # the best fit
 
     def of(self, problem: FitProblem) -> list[Hypothesis]:
         """Hypotheses of the problem; without a misfit only those that the records show."""
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-            self.made = known if self.before.is_noise_limited else [*known, *hypotheses(problem, self.places)]
+            if not self.before.is_noise_limited:
+                known += hypotheses(problem, self.places)
+                known += [] if self.point is None else beyond_bounds(problem, self.point)
+            self.made = known
         return self.made
 
     def __getstate__(self) -> dict[str, object]:
@@ -92,7 +98,7 @@ def explanations(
     hypotheses are fitted roughly, by secants, and those that explain most are fitted to convergence. Of those that
     explain about as much, that with fewer unknowns is the more likely.
     """
-    causes = Causes(before, places)
+    causes = Causes(before, places, point=optimum.point)
     every = causes.of(problem)
     known = replace(problem, whitenings=by.fitted, horizon=1.0)
     slopes = known.jacobian(optimum.point, steps_of(optimum)) if every else np.zeros((0, 0))
@@ -135,6 +141,39 @@ def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list
     found += [] if chain is None else law_hypotheses(chain, fastest, stroke, peak)
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]
+
+
+def beyond_bounds(problem: FitProblem, point: Matrix) -> list[Hypothesis]:
+    """Hypothesis of wider bounds for the values that end at a bound of the search; none without such values.
+
+    A lower bound of zero is none of the search.
+    """
+    space = problem.space
+    lower, upper = space.bounds
+    near = _AT_BOUND * (upper - lower)
+    ends = [
+        (name, unit, float(bound), above)
+        for above, at, bounds in (
+            (True, point >= upper - near, space.upper),
+            (False, point <= lower + near, space.lower),
+        )
+        for name, unit, kind, there, bound in zip(space.names, space.units, space.kinds, at, bounds, strict=True)
+        if kind is not None and there and bound > 0.0
+    ]
+    wider = {name: (above, _WIDER if above else 1.0 / _WIDER) for name, _, _, above in ends}
+
+    def widen(element: Element) -> Network:
+        value = element.value
+        if not isinstance(value, Free) or value.name not in wider:
+            return element
+        above, by = wider[value.name]
+        return element.with_value(
+            replace(value, upper=by * value.upper) if above else replace(value, lower=by * value.lower)
+        )
+
+    device = map_elements(problem.rig.device, widen)
+    hypothesis = Hypothesis(Suspect.BEYOND_BOUNDS, device=device, details=lambda values: {"values": tuple(ends)})
+    return [hypothesis] if ends else []
 
 
 def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:

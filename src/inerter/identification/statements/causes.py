@@ -46,6 +46,7 @@ class Suspect(StrEnum):
     SPIKES = "spikes"
     HELD = "held values"
     JOINED = "joined pieces"
+    BEYOND_BOUNDS = "value beyond the bounds"
 
     def sentence(self, details: Details) -> str:
         """The cause in words, for use after a colon."""
@@ -134,6 +135,14 @@ def _cross_talk_text(d: Details) -> str:
     return f"the load cell picks up {format_quantity(d['size'], d['unit'], 3)} of the {d['signal']}"
 
 
+def _beyond_bounds_text(d: Details) -> str:
+    values = (
+        f"{name} is {'larger' if larger else 'smaller'} than {format_quantity(bound, unit, 3)}, a bound of the search"
+        for name, unit, bound, larger in d["values"]
+    )
+    return " and ".join(values)
+
+
 def _second_gap_text(d: Details) -> str:
     slack, more = format_quantity(d["slack"], "m", 2), format_quantity(d["stiffness"], "N/m", 2)
     return f"a second gap closes in the shaft at a deflection of {slack}, beyond which it is stiffer by {more}"
@@ -191,6 +200,7 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
     Suspect.SPIKES: lambda d: f"spikes replace samples at {_places_text(d)}",
     Suspect.HELD: lambda d: f"the recorder held values at {_places_text(d)}",
     Suspect.JOINED: lambda d: f"the record is joined from pieces of different runs at {_places_text(d)}",
+    Suspect.BEYOND_BOUNDS: _beyond_bounds_text,
 }
 
 
@@ -241,4 +251,5 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
     Suspect.HELD: _constant("interpolate those samples, ", Remedy(Action.REPAIR)),
     Suspect.JOINED: _constant("fit each piece as a separate record, ", Remedy(Action.TRIM)),
+    Suspect.BEYOND_BOUNDS: _constant("give the value wider bounds in the elements of the model"),
 }

@@ -1,0 +1,60 @@
+"""Values that the search of a fit does not reach are a cause of a misfit, which is named, with the values there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from quick_fits import explained, quick_fit
+
+import inerter as it
+from inerter.identification.diagnosis import beyond_bounds
+from inerter.identification.models import MODELS
+from inerter.identification.statements.causes import Suspect
+
+INERTANCE, FRICTION, NOISE = 120.0, 800.0, 0.5  # [kg], [N], [N]; the friction of the catalogue ends at 500 N
+
+
+def record() -> it.Record:
+    """Two tones that grow from rest, and the force of a rigid inerter with friction, in closed form."""
+    random, time = np.random.default_rng(3), np.arange(400) / 200.0
+    omega, size = 2.0 * np.pi * np.array([1.3, 3.1]), np.array([8e-3, 2e-3])
+    share = np.minimum(time / 0.5, 1.0)
+    ramp = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
+    slope = 60.0 * share**2 * (1.0 - share) ** 2
+    bend = np.where(share < 1.0, 240.0 * share * (1.0 - 3.0 * share + 2.0 * share**2), 0.0)
+    sine, cosine = np.sin(np.outer(time, omega)), np.cos(np.outer(time, omega))
+    x, v, a = sine @ size, cosine @ (size * omega), -sine @ (size * omega**2)
+    velocity = ramp * v + slope * x
+    force = INERTANCE * (ramp * a + 2.0 * slope * v + bend * x) + FRICTION * np.sign(velocity)
+    return it.Record(
+        time, ramp * x + 1e-7 * random.standard_normal(400), force + NOISE * random.standard_normal(400),
+        force_bandwidth=5000.0, force_noise=NOISE, displacement_noise=1e-7,
+    )  # fmt: skip
+
+
+def test_bounds_are_widened_of_the_values_that_end_there() -> None:
+    solution = quick_fit(record(), MODELS["friction"], {"b": 100.0, "f": 499.0})
+    problem, point = solution.problem, solution.optimum.point
+    (wider,) = beyond_bounds(problem, point)
+    assert wider.device is not None
+    bounds = {name: (value.lower, value.upper) for name, value in it.Rig(wider.device).free_values().items()}
+    assert bounds["b"] == (0.5, 5000.0)
+    assert bounds["f"][0] == 0.0
+    assert bounds["f"][1] > FRICTION
+    inside = problem.space.coordinates_of({"b": 100.0, "f": 400.0})
+    assert beyond_bounds(problem, inside) == []
+    at_nothing = problem.space.coordinates_of({"b": 0.5, "f": 0.0})  # no friction is no bound of the search
+    (wider,) = beyond_bounds(replace(problem), at_nothing)
+    assert wider.details({})["values"] == (("b", "kg", 0.5, False),)
+
+
+@pytest.mark.campaign
+def test_a_friction_beyond_its_bound_is_not_called_another_law() -> None:
+    found, _ = explained(quick_fit(record(), MODELS["friction"], {"b": 100.0, "f": 499.0}))
+    assert found[0].name is Suspect.BEYOND_BOUNDS, found[0].sentence
+    assert "f is larger than 500 N" in found[0].sentence
+    (b, _), (f, _) = found[0].estimates["b"], found[0].estimates["f"]
+    assert abs(b / INERTANCE - 1.0) < 0.01
+    assert abs(f / FRICTION - 1.0) < 0.01

@@ -8,6 +8,7 @@ from __future__ import annotations
 import functools
 import warnings
 from collections.abc import Callable
+from itertools import chain
 from operator import attrgetter
 from typing import Any, ParamSpec, TypeVar
 
@@ -43,8 +44,8 @@ def adopt_renamed(given: object, **new_names: str) -> None:
     """
     kind = type(given)
     for old, new in new_names.items():
-        places = (vars(given) if hasattr(given, "__dict__") else {}, *map(vars, kind.__mro__))
-        nearest = next((one for one in places if {old, new} & one.keys()), {new: None})
+        places = chain((getattr(given, "__dict__", {}),), map(vars, kind.__mro__))
+        nearest = next((one for one in places if new in one or old in one), {new: None})
         if new not in nearest and not isinstance(nearest[old], RenamedAttribute):
             warn_renamed(f"{kind.__name__}.{old}", new, 4)
             setattr(kind, new, property(attrgetter(old)))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from strategies import logarithmic, random_stable
 
 from inerter import LinearSystem, StatusKind, frequency_response, h2_norm
-from inerter.norms.h2 import h2
+from inerter.norms.h2 import _Schur, _solve, h2
 from inerter.norms.mean_square import Transfer, mean_square
 from inerter.norms.stability import split, stability
 
@@ -114,6 +114,22 @@ def test_random_systems_against_quadrature(order):
     G = frequency_response(system, np.tan(theta))
     square = np.sum(np.sum(np.abs(G) ** 2, axis=(1, 2)) / np.cos(theta) ** 2 * weights) / np.pi
     assert h2_norm(system) == pytest.approx(math.sqrt(square), rel=1e-10)
+
+
+def test_elimination_is_for_systems_whose_motions_all_decay():
+    """It has a solution also where a motion grows, behind a decaying one too, and then it is no covariance."""
+    for seed in range(30):
+        system = random_stable(np.random.default_rng(seed), 1 + seed % 6, 2, 1, 1e-2)
+        A, W = system.A, system.B @ system.B.T
+        (solver, P, _), schur = _solve(A, A.astype(np.longdouble), W), _Schur(A)
+        assert not isinstance(solver, _Schur)
+        np.testing.assert_allclose(P, schur.solve(W), rtol=1e-9, atol=1e-12 * np.abs(P).max())
+        Q = solver.solve(W, adjoint=True)
+        np.testing.assert_allclose(Q, schur.solve(W, adjoint=True), rtol=1e-9, atol=1e-12 * np.abs(Q).max())
+        grows = np.zeros((len(A) + 1, len(A) + 1))
+        grows[:-1, :-1], grows[-1, 0], grows[-1, -1] = A, 1.0, 0.3
+        with pytest.raises(np.linalg.LinAlgError):
+            _solve(grows, grows.astype(np.longdouble), np.pad(W, (0, 1)))
 
 
 @given(st.integers(0, 1000), st.integers(1, 12), st.integers(1, 3))

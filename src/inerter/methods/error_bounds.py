@@ -27,18 +27,18 @@ def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: 
         exact = (ErrorSource(ROUNDING, 0.0),)
         return replace(estimate, error_sources=exact if math.isinf(estimate.value) else ())
     sources = tuple(own)
-    result = replace(estimate, error_sources=(*sources, *estimate.error_sources))
+    status = estimate.status
     for several, most in ((sources, promise), (estimate.error_sources, STAND_INS)):
-        bound = sum(source.bound for source in several)
-        if result.status.ok and not bound <= most:
+        bound = sum([source.bound for source in several])
+        if status.ok and not bound <= most:
             largest = max(several, key=lambda source: source.bound)
             up_to, promised = format_alike([bound, most], "", 2)
             message = f"relative error up to {up_to}, more than {promised}, mostly from {largest.name}"
             if math.isnan(bound):
                 unknown = ", ".join(source.name for source in several if math.isnan(source.bound))
                 message = f"unknown error from {unknown}"
-            result = replace(result, status=Status(StatusKind.INACCURATE, message))
-    return result
+            status = Status(StatusKind.INACCURATE, message)
+    return replace(estimate, status=status, error_sources=(*sources, *estimate.error_sources))
 
 
 def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tuple[ErrorSource, ...]:

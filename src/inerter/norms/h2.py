@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import scipy
@@ -24,6 +26,8 @@ _EPS = float(np.finfo(float).eps)
 _RESIDUAL = 1e-3  # largest residual of the equation for the variance of an excited state, over its terms
 _DAMPED = 1e-4  # relative correction of a variance from which on its motion may be damped by rounding
 _STEADY = 1e-12  # relative correction of every variance after which none is sought: what is left is one of first order
+_FEW_STATES = 6  # up to which elimination takes less time than the Schur form
+_REGULAR = 1e-10  # reciprocal condition of the equations from which on no two poles add up to zero by rounding
 _LONG = float(np.finfo(np.longdouble).eps)
 _AT_ZERO = 16.0 * _EPS  # size of a pole relative to A that may be rounding
 _SMALL = 1e-6  # relative size of the terms of a correction at first order up to which higher orders are below 1e-9
@@ -154,12 +158,14 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
     """
     A, scale = balance(system.A)
     n = len(A)
-    into, out = (np.concatenate((scale, np.ones(size - n))) for size in fine.values.shape)
-    units = out / into[:, None]  # powers of two
+    into, out = (np.ones(size) for size in fine.values.shape)
+    into[:n], out[:n] = scale, scale
+    units: Any = out / into[:, None]  # powers of two
     values, errors = fine.values * units, fine.errors * units
     fine_A, fine_B, fine_C = values[:n, :n], values[:n, n:], values[n:, :n]
     EA, EB, EC = errors[:n, :n], errors[:n, n:], errors[n:, :n]
-    drifting = _drifting(EA + np.abs(A))
+    size_A = np.abs(A)
+    drifting = _drifting(EA + size_A)
     drift = None
     if drifting.any():
         covariance = drift_covariance(fine_B[drifting], system.delays, system.sources)
@@ -168,21 +174,20 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
         drift = _Drift(drifting, covariance.astype(float))
     W, EW = _excitation(system, A, (fine_A, fine_B), (EA, EB), pade_order)
     try:
-        solver = _Lyapunov(A if drift is None else A[drift.blocks[0]])
-        P, residual, solved = _covariance(solver, A, (fine_A, W), drift)
+        solver, P, residual, solved = _covariance(A, (fine_A, W), drift)
         size, C = np.abs(P), fine_C.astype(float)
         weights = np.abs(C)
         seen = weights.dot(size)
         squares = (fine_C.dot(P) * fine_C).sum(axis=1)
         goals = np.where((seen * weights).sum(axis=1) > 0.0, squares, np.inf).astype(float)
-        if not (goals > 0.0).all():
+        if not goals.min(initial=np.inf) > 0.0:
             return None
         Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
         return None
     change = np.array([np.vdot(one, residual) for one in Q])
     together = sum(map(np.abs, Q))
-    unsure = 2.0 * np.vdot(together, EW + (EA + n * _LONG * np.abs(A)).dot(size))
+    unsure = 2.0 * np.vdot(together, EW + (EA + n * _LONG * size_A).dot(size))
     unsure += np.vdot(seen / goals[:, None], 2.0 * EC + n * _LONG * weights)
     terms = float(np.vdot(together, np.abs(residual)))
     if not (unsure <= ACCURATE and terms <= _SMALL and solved):
@@ -205,33 +210,31 @@ class _Drift:
         return np.ix_(d, d), np.ix_(d, w), np.ix_(w, d), np.ix_(w, w)
 
 
-def _covariance(
-    solver: _Lyapunov, A: Matrix, fine: tuple[Matrix, Matrix], drift: _Drift | None
-) -> tuple[Matrix, Matrix, bool]:
-    """P, the residual of its equation, and whether that is small against the noise that enters each state.
+def _covariance(A: Matrix, fine: tuple[Matrix, Matrix], drift: _Drift | None) -> tuple[_Solver, Matrix, Matrix, bool]:
+    """Solver, P, the residual of its equation, and whether that is small against the noise that enters each state.
 
     Of states that only drift the covariance is known, and the others follow them.
     """
     fine_A, W = fine
     noise = W.astype(float)
     if drift is None:
-        P, residual = solver.refine(fine_A, W)
+        solver, P, residual = _solve(A, fine_A, W)
     else:
         P, covariance = np.zeros_like(A), drift.covariance
         d, dw, wd, w = drift.blocks
-        follow = A[dw]
+        solver, follow = _Schur(A[d]), A[dw]
         P[w] = covariance
         P[dw] = np.linalg.solve(A[d], -(follow @ covariance + noise[dw]))
         P[wd] = P[dw].T
-        P[d], _ = solver.refine(fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
+        P[d], _ = _refine(solver, fine_A[d], W[d] + _add_transpose(follow @ P[dw].T))
         residual = _residual(fine_A, P, W)
         residual[w] = 8.0 * _EPS * covariance
     enters = noise.diagonal()
     terms = 2.0 * (np.abs(A) * np.abs(P)).sum(axis=1) + enters
-    return P, residual, not ((enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)).any()
+    return solver, P, residual, not ((enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)).any()
 
 
-def _adjoint(solver: _Lyapunov, A: Matrix, row: Matrix, drift: _Drift | None) -> Matrix:
+def _adjoint(solver: _Solver, A: Matrix, row: Matrix, drift: _Drift | None) -> Matrix:
     """Q of `_squares` for one output."""
     goal = np.outer(row, row)
     if drift is None:
@@ -259,8 +262,79 @@ def _select_none(real: float, imaginary: float) -> None:
     """LAPACK calls it for no pole where it is not to sort them."""
 
 
-class _Lyapunov:
-    """Equations with one matrix A, by one Schur form (Bartels and Stewart, 1972).
+class _Solver(Protocol):
+    """Equations A P + P A' + W = 0 with one matrix A."""
+
+    def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
+        """P, symmetric as W is, or that of the equation with A' in place of A."""
+
+
+def _solve(A: Matrix, fine_A: Matrix, W: Matrix) -> tuple[_Solver, Matrix, Matrix]:
+    """Solver, P and the residual of its equation: by elimination where that takes less time and is as safe.
+
+    A is stable if a positive definite P solves the equation with a covariance W (Lyapunov); the Schur form has its
+    poles, which say so in every case.
+    """
+    if 0 < len(A) <= _FEW_STATES:
+        with suppress(np.linalg.LinAlgError):
+            elimination = _Elimination(A)
+            P, residual = _refine(elimination, fine_A, W)
+            if not scipy.linalg.lapack.dpotrf(P)[1]:
+                return elimination, P, residual
+    schur = _Schur(A)
+    return schur, *_refine(schur, fine_A, W)
+
+
+class _Elimination:
+    """Elimination among the n (n + 1) / 2 different entries of P: p with M p + w = 0 for those w of W.
+
+    The adjoint equation has M' in its place where each entry off the diagonal counts twice.
+
+    Raises `LinAlgError` near a pole that does not decay.
+    """
+
+    def __init__(self, A: Matrix) -> None:
+        self.places = _places(len(A))
+        M = A.ravel().dot(self.places.entries).reshape(self.places.twice.size, -1)
+        lapack: Any = scipy.linalg.lapack
+        self.factors, self.pivots, _ = lapack.dgetrf(M)
+        reciprocal_condition, _ = lapack.dgecon(self.factors, lapack.dlange("1", M))
+        if not reciprocal_condition > _REGULAR:
+            raise np.linalg.LinAlgError("two poles may add up to zero")
+
+    def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
+        upper, twice, both = self.places.upper, self.places.twice, self.places.both
+        w = W.ravel()[upper]
+        right = w * twice if adjoint else w
+        p, _ = scipy.linalg.lapack.dgetrs(self.factors, self.pivots, right, trans=int(adjoint))
+        return np.asarray((p / -twice if adjoint else -p)[both], dtype=float)
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where the entries of a symmetric (n, n) matrix are among its different ones, those on and above the diagonal."""
+
+    upper: NDArray[np.intp]  # (m,) of the whole matrix, flat
+    both: NDArray[np.intp]  # (n, n) of the different ones
+    twice: Matrix  # (m,) how often each stands in the matrix
+    entries: Matrix  # (n * n, m * m) M over A, both flat
+
+
+@cache
+def _places(n: int) -> _Places:
+    rows, columns = np.triu_indices(n)
+    both = np.zeros((n, n), dtype=np.intp)
+    both[rows, columns] = both[columns, rows] = np.arange(rows.size)
+    entries = np.zeros((n, n, rows.size, rows.size))
+    for row, (i, j) in enumerate(zip(rows, columns, strict=True)):
+        for k in range(n):
+            entries[i, k, row, both[k, j]] += 1.0
+            entries[j, k, row, both[i, k]] += 1.0
+    return _Places(rows * n + columns, both, np.where(rows == columns, 1.0, 2.0), entries.reshape(n * n, -1))
+
+
+class _Schur:
+    """One Schur form of A (Bartels and Stewart, 1972).
 
     Raises `LinAlgError` for a pole that may lie at zero: the equation then has many solutions, and which one comes out
     is decided by rounding, though the motion may not be excited at all.
@@ -272,7 +346,6 @@ class _Lyapunov:
             raise np.linalg.LinAlgError("a pole may lie at zero")
 
     def solve(self, W: Matrix, adjoint: bool = False) -> Matrix:
-        """P with A P + P A' + W = 0, or of the equation with A' in place of A."""
         if not W.size:
             return W
         kinds = ("T", "N") if adjoint else ("N", "T")
@@ -281,26 +354,27 @@ class _Lyapunov:
         P = self.Z.dot(Y / scale).dot(self.Z.T)
         return np.asarray(0.5 * (P + P.T), dtype=float)
 
-    def refine(self, A: Matrix, W: Matrix) -> tuple[Matrix, Matrix]:
-        """P for an A and a W in extended precision, corrected while that changes a variance, and what remains of W.
 
-        Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
-        """
-        P, before = self.solve(W.astype(float)), np.inf
+def _refine(solver: _Solver, A: Matrix, W: Matrix) -> tuple[Matrix, Matrix]:
+    """P for an A and a W in extended precision, corrected while that changes a variance, and what remains of W.
+
+    Raises `LinAlgError` where the first correction of a variance is not small: its motion is damped by rounding.
+    """
+    P, before = solver.solve(W.astype(float)), np.inf
+    residual = _residual(A, P, W)
+    for turn in range(20):
+        step = solver.solve(residual)
+        change = math.sqrt(np.vdot(step, step))
+        steps, variances = np.abs(step.diagonal()), P.diagonal()
+        if turn == 0 and (steps > _DAMPED * variances).any():
+            raise np.linalg.LinAlgError("damping lost to rounding")
+        if not change < 0.5 * before:
+            break
+        P, before = P + step, change
         residual = _residual(A, P, W)
-        for turn in range(20):
-            step = self.solve(residual)
-            change = math.sqrt(np.vdot(step, step))
-            steps, variances = np.abs(step.diagonal()), P.diagonal()
-            if turn == 0 and (steps > _DAMPED * variances).any():
-                raise np.linalg.LinAlgError("damping lost to rounding")
-            if not change < 0.5 * before:
-                break
-            P, before = P + step, change
-            residual = _residual(A, P, W)
-            if (steps <= _STEADY * variances).all():
-                break
-        return P, residual
+        if (steps <= _STEADY * variances).all():
+            break
+    return P, residual
 
 
 def _residual(A: Matrix, P: Matrix, W: Matrix) -> Matrix:

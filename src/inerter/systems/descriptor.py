@@ -23,6 +23,7 @@ from math import prod
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, InerterError, LinearSystemError
@@ -204,11 +205,12 @@ def _named_system(d: Descriptor, sources: tuple[str, ...], delays: tuple[float, 
 
 def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix) -> tuple[Matrix, Matrix]:
     """S^-1 right in extended precision, and its error: infinite where S is singular to rounding."""
+    if not S.size:  # which LAPACK refuses
+        return right, np.zeros(right.shape)
     size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
     scaled, right = S / size, right / size
-    try:
-        inverse = np.linalg.inv(scaled.astype(float))
-    except np.linalg.LinAlgError:
+    _, _, inverse, singular = scipy.linalg.lapack.dgesv(scaled.astype(float), np.eye(len(S)))
+    if singular:
         return np.zeros_like(right), np.full(right.shape, np.inf)
     solved = step = inverse.dot(right.astype(float)).astype(np.longdouble)
     terms = S_size.dot(np.abs(solved).astype(float)) + right_size

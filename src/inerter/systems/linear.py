@@ -132,8 +132,9 @@ class LinearSystem:
 
         Raises `LinearSystemError` if a number is not finite.
         """
-        for name, matrix in zip("ABCD", matrices, strict=True):
-            _check_finite(name, matrix)
+        if not all(math.isfinite(np.vdot(matrix, matrix)) for matrix in matrices):
+            for name, matrix in zip("ABCD", matrices, strict=True):
+                _check_finite(name, matrix)
         found = object.__new__(LinearSystem)  # as a new one would check all names again
         A, B, C, D = matrices
         found.__dict__.update(self.__dict__, A=A, B=B, C=C, D=D, delays=self.delays.copy(), origin=origin)

@@ -332,8 +332,9 @@ def test_each_quantity_that_is_told_can_be_limited(client: TestClient, name: str
     assert ("J1" in told, "suspension-travel" in told) == ("road" in document,) * 2
     assert set(document.get("indices", {})) < set(told)
     assert any("static stiffness of" in row["words"] for row in told.values())
+    assert {row["written"] for row in told.values() if row["unit"] == "m"} <= {"mm"}
     for of, row in told.items():
-        limit = {"at_most": f"1 {row['unit']}" if row["unit"] else 1.0}
+        limit = {"at_most": f"1 {row['written']}" if row["unit"] else 1.0}
         limits = {**document["study"].get("subject_to", {}), of: limit}
         assert problems({**document, "study": {**document["study"], "subject_to": limits}}) == []
 

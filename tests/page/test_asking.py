@@ -210,7 +210,7 @@ def test_what_is_no_quantity_of_a_limit_changes_nothing(visitor: Visitor, tmp_pa
     assert visitor.values() == before
     study = tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
     assert study["subject_to"] == {
-        "suspension-travel": {"at_most": "7 m"},
+        "suspension-travel": {"at_most": "7 mm"},
         "dynamic-load-coefficient": {"at_most": 0.3},
     }
 

@@ -190,6 +190,10 @@ test("quantities come apart and together as they are written", () => {
   assert.deepEqual(takenApart("5e-7 m^3/cycle"), { number: 5e-7, unit: "m^3/cycle" });
   assert.equal(takenApart("abc"), null);
   assert.equal(quantity(123456.789, "N/m"), "123500 N/m");
+  assert.equal(quantity(0.000005, "m^3/cycle"), "5e-6 m^3/cycle");
+  assert.equal(quantity(-0.0000123456, "m"), "-1.235e-5 m");
+  assert.equal(quantity(0.0005, "m"), "0.0005 m");
+  assert.equal(quantity(0, "N"), "0 N");
   assert.equal(brief("7544.184883044672 N s/m"), "7544.2 N s/m");
   assert.equal(brief("181.75 kg"), "181.75 kg");
   assert.equal(brief("3.19238 kN s/m"), "3.1924 kN s/m");

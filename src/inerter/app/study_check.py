@@ -16,6 +16,8 @@ from inerter.files.study.study import Study, elements_used
 from inerter.files.study.sweeps import number_of
 from inerter.formatting import format_quantity
 
+_WRITTEN = {"m": "mm", "N/m": "kN/m", "m/N": "um/N"}  # units in which engineers state limits of a suspension
+
 
 def check_document(document: object) -> dict[str, Any]:
     """Problems and notes of a document, the networks of its layouts, and what can be swept and limited in it.
@@ -65,9 +67,11 @@ def _valid_parts(document: object) -> tuple[Study | None, Study | None, list[dic
 
 
 def _limitable(study: Study) -> list[dict[str, Any]]:
-    """Quantities that a limit may be on."""
-    units = limitable(study)
-    return [{"of": name, "words": limited_quantity_words(study, name), "unit": unit} for name, unit in units.items()]
+    """Quantities that a limit may be on, with the unit in which a number without one is meant."""
+    return [
+        {"of": name, "words": limited_quantity_words(study, name), "unit": unit, "written": _WRITTEN.get(unit, unit)}
+        for name, unit in limitable(study).items()
+    ]
 
 
 def _places(study: Study) -> list[dict[str, Any]]:

@@ -55,7 +55,7 @@ export function Constraints({ store }) {
     .flatMap((/** @type {any} */ { limits }) => limits ?? []);
   /** @param {string} name */
   const named = (name) => choices.find((each) => each.of === name);
-  const unit = named(of)?.unit ?? "";
+  const written = named(of)?.written ?? "";
   /** @param {string} id @param {string} before @param {string[]} place @param {string} text */
   const take = (id, before, place, text) => {
     const unit = named(place.slice(PLACE.length, -1).join("."))?.unit ?? "";
@@ -63,7 +63,7 @@ export function Constraints({ store }) {
       { type: "placed", place, value: unit === "" && text !== "" ? numberIn(text) : text });
   };
   const add = () => {
-    const before = `1 ${unit}`;
+    const before = `1 ${written}`;
     if (value.trim()) take(ADDED, before, [...PLACE, ...of.split("."), sense], completed(value.trim(), before));
     setValue("");
   };
@@ -87,7 +87,7 @@ export function Constraints({ store }) {
       <${Select} aria-label="Which side" name="sense" value=${sense} set=${setSense}
         choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
       <input class="entry" name="value" aria-label="How much, with its unit" autocomplete="off"
-        placeholder=${unit ? `in ${printed(unit)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
+        placeholder=${written ? `in ${printed(written)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
         onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />
       <button type="button" class="edged" onClick=${add}>Add</button>
     </div><${Wrong} state=${state} id=${ADDED} />`;
@@ -99,7 +99,7 @@ const ADDED = "limit to be added"; // the field of one
 const numberIn = (text) => (Number.isFinite(Number(text)) ? Number(text) : text);
 
 /** What a constraint can be on, by the newest study without a fault. @param {State} state
- * @returns {{of: string, words: string, unit: string}[]} */
+ * @returns {{of: string, words: string, unit: string, written: string}[]} */
 function useLimitable(state) {
   const known = useRef([]);
   const found = answerOf(state, "check").value?.limitable ?? [];

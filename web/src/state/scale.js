@@ -3,6 +3,7 @@
 import { own } from "./document.js";
 
 export const STEPS = 400;
+const SMALL = 1e-4; // below it, zeros after the point are hard to count
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$/;
 
 /** @typedef {{number: number, unit: string}} Written */
@@ -45,8 +46,11 @@ export function briefIn(about, text, unit) {
   return inFive({ number: apart.number * own.factor, unit: own.unit });
 }
 
-/** A number with four digits or fewer, as a person writes it. @param {number} number */
-const shortest = (number) => String(Number(number.toPrecision(4)));
+/** A number with four digits or fewer, as a person writes it; small ones have a power of ten. @param {number} number */
+function shortest(number) {
+  const rounded = Number(number.toPrecision(4));
+  return rounded !== 0 && Math.abs(rounded) < SMALL ? rounded.toExponential() : String(rounded);
+}
 
 /** @param {number} value @param {number} lower @param {number} upper */
 export function positionOf(value, lower, upper) {

@@ -166,7 +166,9 @@ def test_all_forms_of_results_have_the_values_in_each_condition(tmp_path: Path) 
     data = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 2))))
     told = [[(one["condition"], one["value"]) for one in design["in_conditions"]] for design in data["designs"]]
     assert told == [[("empty", one[0]), ("laden", one[1])] for one in values.tolist()]
-    assert data["verdicts"][0]["caveats"][-1]["sentence"].endswith("in condition laden.")
+    caveat = data["verdicts"][0]["caveats"][-1]
+    assert (caveat["kind"], caveat["severity"]) == ("condition", "warning")
+    assert caveat["sentence"].endswith("in condition laden.")
     write_summary(tmp_path / "summary.csv", study, results)
     rows = list(csv.DictReader(io.StringIO((tmp_path / "summary.csv").read_text(encoding="utf-8"))))
     assert [[float(row[f"value in {name}"]) for name in ("empty", "laden")] for row in rows] == values.tolist()

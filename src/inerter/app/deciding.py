@@ -111,7 +111,10 @@ def verdict_of(told: Decision) -> Answer:
     return {
         "sentence": typeset(verdict.sentence),
         "severity": verdict.answer.value,
-        "caveats": [{"sentence": typeset(one.sentence), "severity": one.severity.value} for one in verdict.caveats],
+        "caveats": [
+            {"kind": one.kind.value, "sentence": typeset(one.sentence), "severity": one.severity.value}
+            for one in verdict.caveats
+        ],
     }
 
 

@@ -545,7 +545,7 @@ class WheelTravel:
 
 if __name__ == "__main__":
     study = it.load_study("seated.toml")
-    with ProcessPoolExecutor(2, get_context("spawn")) as executor:
+    with ProcessPoolExecutor(1, get_context("spawn")) as executor:
         away = it.run_study(study, "away", executor=executor)
         print(len(executor._processes))
     here = it.run_study(study, "here")
@@ -565,4 +565,4 @@ def test_processes_that_are_spawned_know_the_rows_of_distributions_and_scripts(p
     (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
     done = started(place, tmp_path, "script.py")
     assert done.returncode == 0, done.stderr
-    assert done.stdout == "2\nTrue ['D1', 'J3', 'T1', 'W1'] []\nTrue\n"
+    assert done.stdout == "1\nTrue ['D1', 'J3', 'T1', 'W1'] []\nTrue\n"

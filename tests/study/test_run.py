@@ -198,6 +198,7 @@ def test_workers_end_with_their_parent(tmp_path: Path) -> None:
     while len(children) < 2:  # processes are started once the work is known to be long
         assert process.poll() is None
         assert time.monotonic() < deadline
+        time.sleep(0.1)
         children = [int(pid) for pid in os.listdir("/proc") if pid.isdigit() and _parent(pid) == process.pid]
     process.kill()
     process.communicate()

@@ -12,6 +12,8 @@ from nodal import Nodal
 import inerter as it
 from inerter.errors import PerformanceIndexError
 from inerter.indices.measured_road import _alternating
+from inerter.methods.error_bounds import improvement_bound
+from inerter.methods.measured_road_errors import ROAD_ERRORS
 from inerter.roads.spectrum import RoadSpectrum
 from inerter.signals.road import RoadShape
 
@@ -120,11 +122,37 @@ def test_the_error_bound_holds_against_the_densities_that_were_measured(seed):
             assert line <= abs(kept / found.value - 1.0) + 3.6e-3  # by the filter alone
 
 
+@pytest.mark.parametrize("seed", sampled(range(8), [0], kept=2))
+def test_two_values_on_one_measured_road_share_its_errors(seed):
+    """Improvements on the measured densities, with longer and with shorter waves missing or twice as much."""
+    rng = np.random.default_rng([8609, seed])
+    spectrum, speed = measured(rng, float(rng.uniform(1.7, 2.3))), float(rng.uniform(8.0, 35.0))
+    struts = [it.Spring(2e4) | it.Damper(1.5e3), it.Spring(2e4) | it.Damper(2.5e3) - it.Inerter(200.0)]
+    cars = [it.QuarterCar(250.0, 35.0, 1.5e5, strut) for strut in struts]
+    road, two = spectrum.road(speed), 0.5 * spectrum.standard * 0.01
+    for kind, output in ((it.RideComfort, "sprung_acceleration"), (it.TyreLoad, "tyre_load")):
+        own, base = (it.evaluate(car, kind(road), it.Norm()) for car in cars)
+        bounds = own.error_bound, base.error_bound
+        found = improvement_bound(own.value, base.value, *bounds, own.shared_errors, base.shared_errors)
+        assert found <= improvement_bound(own.value, base.value, *bounds)  # less, unless their effects are opposite
+        assert improvement_bound(1.0, 1.0, own.error_bound, own.error_bound, *[own.shared_errors] * 2) < 1e-6
+        truths = [by_quadrature(car, output, spectrum, speed) for car in cars]
+        for longer in (0.0, 1.0, 2.0):
+            for shorter in (0.0, 1.0, 2.0):
+
+                def stands(n, factors=(longer, shorter)):
+                    return np.where(n < 0.1, *factors) * 2.0 * two / n**2
+
+                truth, reference = (rms(stands) for rms in truths)
+                off = 100.0 * abs(truth / reference - own.value / base.value)
+                assert off <= 1.02 * found + 0.01, (longer, shorter)
+
+
 def test_a_road_says_how_far_its_line_may_lead_whatever_the_method():
     rng = np.random.default_rng(5)
     road = measured(rng, 1.8).road(20.0)
     car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3) | it.Friction(5.0))
-    names, known = {"line of the road", "road beyond the measured waves"}, []
+    names, known = set(ROAD_ERRORS), []
     for method in (it.Norm(), it.StatisticalLinearisation(), it.ExpectedValue(realisations=2), it.ApproximateLinear()):
         found = it.evaluate(car, it.RideComfort(road), method)
         bounds = {source.name: source.bound for source in found.error_sources if source.name in names}

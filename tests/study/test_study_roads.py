@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,9 +26,11 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import dataset
 from inerter.files.study.running import run_study
-from inerter.files.study.study import Study
+from inerter.files.study.study import StrutLayout, Study
 from inerter.formatting import format_number
+from inerter.methods.error_bounds import improvement_bound
 from inerter.report.conclusions import conclusion_sentences
+from inerter.report.verdicts import study_decision
 
 ROUGH = 'roughness = "5e-7 m^3/cycle"'
 CAR = """model = "full-car"
@@ -128,6 +131,39 @@ def test_a_profile_is_its_road_of_waviness_two(load, tmp_path, track):
     assert run_case(study, case).error_bounds["norm"]["J1"] == by_python.error_bound > 1e-3  # by the line
     assert study.road.roughness == pytest.approx(0.5 * 64e-6 * 0.01, rel=0.1)  # that it was made with
     assert value(study) == it.evaluate(study.design("S1"), it.RideComfort(spectrum.road(25.0)), it.Norm()).value
+
+
+TWO_SPEEDS = """
+[[conditions]]
+road.speed = "15 m/s"
+[[conditions]]
+road.speed = "30 m/s"
+"""
+
+
+@pytest.mark.parametrize("over", ["", "mean", "worst"])
+def test_designs_on_a_measured_road_share_its_errors(load, tmp_path, over):
+    """Bounds of improvements are those of both estimates in Python, smaller than of values on roads of their own."""
+    settings = 'indices = ["J1", "J3"]' + (f'\nconditions = "{over}"' if over else "")
+    study = load('profile = "road.csv"', settings=settings, more=TWO_SPEEDS if over else "")
+    study = replace(study, layouts={**study.layouts, "soft": StrutLayout({"strut": "k - k | c"})}, baseline="S1")
+    data = run_study(study, tmp_path / "out").data
+    bound_of_soft = data.improvement_bound.sel(layout="soft").sel({"method": "norm"})
+    for index in study.indices:
+        one, base = (it.evaluate(study.design(n), study.over_conditions(index), it.Norm()) for n in ("soft", "S1"))
+        pairs, found = [(one, base)], [bound_of_soft.sel(index=index).item()]
+        if over:
+            pairs += zip(one.in_conditions, base.in_conditions, strict=True)
+            here = data["in_conditions.improvement_bound"].sel(layout="soft", index=index).sel({"method": "norm"})
+            found += here.values.tolist()
+        for bound, (own, other) in zip(found, pairs, strict=True):
+            errors = own.error_bound, other.error_bound, own.shared_errors, other.shared_errors
+            assert bound == pytest.approx(improvement_bound(own.value, other.value, *errors), rel=1e-9)
+        if over != "worst":  # where another condition may be the worst in truth
+            assert found[0] < improvement_bound(one.value, base.value, one.error_bound, base.error_bound)
+    softer = next(design for design in study_decision(data, "J1").designs if design.name == "soft")
+    (load_of_it,) = softer.others
+    assert load_of_it.improvement.bound == pytest.approx(bound_of_soft.sel(index="J3").item(), rel=1e-9)
 
 
 @pytest.mark.parametrize(("key", "unit", "other"), [("track", "m", 0.9), ("wavenumber", "cycle/m", 0.31)])

@@ -220,6 +220,8 @@ def improvement_of(two: Comparison | None) -> Improvement | None:
     """Improvement of the first design over the second, in per cent of its value; None without a comparison."""
     if two is None:
         return None
-    bound = improvement_bound(two.first.value, two.second.value, two.first.error_bound, two.second.error_bound)
+    one, other = two.first, two.second
+    errors = one.error_bound, other.error_bound, one.shared_errors, other.shared_errors
+    bound = improvement_bound(one.value, other.value, *errors)
     error = np.nan if two.first.standard_error is None else two.percent_error
     return Improvement(-two.percent, error, bound, two.is_tie, two.status)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from inerter.errors import ErrorSource, Status, StatusKind
@@ -46,27 +47,43 @@ def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tupl
     total = sum(weight * part.value for weight, part in zip(weights, parts, strict=True))
     if not math.isfinite(total) or total == 0.0 or not all(part.error_sources for part in parts):
         return ()
-    found: dict[str, float] = {}
+    found: dict[str, ErrorSource] = {}
     for weight, part in zip(weights, parts, strict=True):
+        share = weight * abs(part.value / total)
         for source in part.error_sources:
-            found[source.name] = found.get(source.name, 0.0) + weight * abs(part.value / total) * source.bound
-    return tuple(ErrorSource(name, bound) for name, bound in found.items())
+            known = found.get(source.name, ErrorSource(source.name, 0.0))
+            bound, shared = known.bound + share * source.bound, known.shared + share * source.shared
+            found[source.name] = replace(known, bound=bound, shared=shared)
+    return tuple(found.values())
 
 
 def of_worst(parts: Sequence[Estimate], value: float) -> tuple[ErrorSource, ...]:
     """Error sources of the largest of some estimates, `value`; none where one of them names none.
 
-    It is off by no more than that one of them whose error is the largest.
+    It is off by no more than that one of them whose error is the largest. As another one may be the largest in truth,
+    no other value shares that error.
     """
     if not math.isfinite(value) or value == 0.0 or not all(part.error_sources for part in parts):
         return ()
     widest = max(parts, key=lambda part: abs(part.value) * part.error_bound)
     share = abs(widest.value / value)
-    return tuple(replace(source, bound=share * source.bound) for source in widest.error_sources)
+    return tuple(ErrorSource(source.name, share * source.bound) for source in widest.error_sources)
 
 
-def improvement_bound(value: float, base: float, bound: float, base_bound: float) -> float:
-    """Largest error of an improvement [%], of values with these relative errors; nan where none is known."""
+def improvement_bound(
+    value: float,
+    base: float,
+    bound: float,
+    base_bound: float,
+    shared: Mapping[str, float] = MappingProxyType({}),
+    base_shared: Mapping[str, float] = MappingProxyType({}),
+) -> float:
+    """Largest error of an improvement [%], of values with these relative errors; nan where none is known.
+
+    Of errors that both share, the `shared_errors` of each estimate, the difference counts.
+    """
     if not math.isfinite(value) or not base or not base_bound < 1.0:
         return math.nan
-    return 100.0 * abs(value / base) * (bound + base_bound) / (1.0 - base_bound)
+    alone = sum(whole - sum(map(abs, of.values())) for whole, of in ((bound, shared), (base_bound, base_shared)))
+    apart = sum(abs(shared.get(name, 0.0) - base_shared.get(name, 0.0)) for name in {**shared, **base_shared})
+    return 100.0 * abs(value / base) * (alone + apart) / (1.0 - base_bound)

@@ -15,6 +15,8 @@ from inerter.norms.response import modal_response
 from inerter.systems.linear import LinearSystem
 
 Array = NDArray[np.float64]
+ROAD_ERRORS = ("line of the road", "longer waves than measured", "shorter waves than measured")
+_LONGEST = 1e-3  # of the lowest measured frequency: that down to which longer waves count
 _POINTS = 800  # frequencies between the ends of what was measured
 _BESIDE = np.concatenate([-np.geomspace(30.0, 0.03, 20), np.geomspace(0.03, 30.0, 20)])  # of a pole, over its damping
 
@@ -26,35 +28,49 @@ def road_errors(
 
     `system` has the outputs of the question over white noise, with these `norms`. The road as it was measured, with the
     densities of its bands in the place of the line, gives another value: that is the error by the line. What lies
-    beyond the waves that were measured may be missing, or twice as much.
+    beyond the waves that were measured may be missing, or twice as much, the longer ones and the shorter ones each.
+    All three are shared by all values on the road.
     """
     found = shape_of(definition.drive)
     if found is None or definition.is_peak or not np.all(np.isfinite(norms)):
         return ()
     shape, speed = found
     ends = [2.0 * math.pi * speed * n for n in (shape.wavenumber[0], shape.wavenumber[-1])]
-    omega = _frequencies(ends[0], ends[1], np.asarray(np.linalg.eigvals(system.A), complex))
-    power = np.sum(np.abs(modal_response(system, omega, pade_order)) ** 2, axis=2) / math.pi
-    total = np.maximum(norms**2, 1e-300)
+    poles, total = np.asarray(np.linalg.eigvals(system.A), complex), np.maximum(norms**2, 1e-300)
+
+    def power_between(low: float, high: float) -> tuple[Array, Array]:
+        omega = _frequencies(low, high, poles)
+        return omega, np.sum(np.abs(modal_response(system, omega, pade_order)) ** 2, axis=2) / math.pi / total
+
+    omega, power = power_between(*ends)
     ratio = np.exp(np.interp(np.log(omega / (2.0 * math.pi * speed)), np.log(shape.wavenumber), np.log(shape.ratio)))
-    by_line = np.trapezoid(power * (ratio - 1.0)[:, None], omega, axis=0) / total
-    beyond = np.clip(1.0 - np.trapezoid(power, omega, axis=0) / total, 0.0, 1.0)
+    by_line = np.asarray(np.trapezoid(power * (ratio - 1.0)[:, None], omega, axis=0))
+    beyond = np.asarray(np.clip(1.0 - np.trapezoid(power, omega, axis=0), 0.0, 1.0))
+    omega, power = power_between(_LONGEST * ends[0], ends[0])
+    longer = np.asarray(np.minimum(np.trapezoid(power, omega, axis=0), beyond))
     change = _change_of(definition, norms)
-    line, most = change(by_line), max(change(by_line + beyond), change(by_line - beyond))
+    line = change(by_line)
+
+    def most(shares: Array) -> float:
+        return max(abs(change(by_line + shares) - line), abs(change(by_line - shares) - line))
+
+    both, several = most(beyond), np.array([most(longer), most(beyond - longer)])
+    long, short = (several * both / max(float(several.sum()), 1e-300)).tolist()  # which together make the most of both
     return (
-        ErrorSource("line of the road", line),
-        ErrorSource("road beyond the measured waves", max(most - line, 0.0)),
+        ErrorSource("line of the road", abs(line), line),
+        ErrorSource("longer waves than measured", long, long),
+        ErrorSource("shorter waves than measured", short, short),
     )
 
 
 def _change_of(definition: IndexDefinition, norms: Array) -> Callable[[Array], float]:
-    """Function from relative changes of the mean squares to the relative change of the index."""
+    """Function from relative changes of the mean squares to the relative change of the index, with its sign."""
     weights = np.array([abs(output.weight) for output in definition.outputs])
     value = float(definition.combine(norms, weights))
 
     def change(shares: Array) -> float:
         other = float(definition.combine(norms * np.sqrt(np.maximum(1.0 + shares, 0.0)), weights))
-        return abs(other / value - 1.0) if value > 0.0 else 0.0
+        return other / value - 1.0 if value > 0.0 else 0.0
 
     return change
 

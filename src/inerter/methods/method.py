@@ -76,6 +76,11 @@ class Estimate:
         """
         return float(sum(source.bound for source in self.error_sources)) if self.error_sources else nan
 
+    @property
+    def shared_errors(self) -> dict[str, float]:
+        """Relative effects, with their signs, of the errors of the road that all values on it share, by source."""
+        return {source.name: source.shared for source in self.error_sources if source.shared}
+
 
 class FormerMethodNames:
     """Names that attributes of methods had in 0.1.0."""

@@ -25,6 +25,7 @@ from inerter.figures.labels import (
     method_label,
     methods,
 )
+from inerter.files.study.results import OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.study import Study
 from inerter.formatting import format_list
 from inerter.methods.error_bounds import improvement_bound
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 
 _STATIC = "the static limit, which no damper or inerter lowers"
 _TWO_SIDED = 2.0  # standard errors of a difference that is not significant
-_DIMS = ("layout", "parameter", "other")  # of what a decision compares
+_DIMS = ("layout", "parameter", "other", ROAD_ERROR)  # of what a decision compares
 _ELSEWHERE = (CaveatKind.LIMIT, CaveatKind.NEGLECTED)  # said once for all indices, in the sentence on limits and notes
 
 
@@ -198,14 +199,20 @@ def _others(results: xr.Dataset, index: str, design: xr.Dataset, base: xr.Datase
         own, reference = (float(one["other_value"].values[i]) for one in (design, base))
         by, percent = None, percent_below(own, reference)
         if design["layout"].item() != base["layout"].item() and isfinite(percent):
-            bounds = [
-                float(one["other_error_bound"].values[i]) if "other_error_bound" in one else nan
-                for one in (design, base)
-            ]
-            is_tie = abs(percent) <= _TWO_SIDED * spread
-            by = Improvement(percent, bound=improvement_bound(own, reference, *bounds), is_tie=is_tie)
+            pair = [one.isel(other=i) for one in (design, base)]
+            widest, of_base = (float(one["other_error_bound"]) if "other_error_bound" in one else nan for one in pair)
+            bound = improvement_bound(own, reference, widest, of_base, *map(_road_effects, pair))
+            by = Improvement(percent, bound=bound, is_tie=abs(percent) <= _TWO_SIDED * spread)
         if other != index and not (isnan(own) and isnan(reference)):
             yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
+
+
+def _road_effects(other: xr.Dataset) -> dict[str, float]:
+    """Effects of the errors of a measured road on another index, by error."""
+    if OTHER_EFFECT not in other:
+        return {}
+    effects = other[OTHER_EFFECT]
+    return dict(zip(effects[ROAD_ERROR].values.tolist(), effects.values.tolist(), strict=True))
 
 
 def _at_bounds(design: xr.Dataset) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -65,6 +65,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             effects={name: [found.first_order[name], found.total_order[name]] for name in found.first_order},
             standard_error=found.nominal.standard_error,
             error_bound=number_or_none(found.nominal.error_bound),
+            shared_errors=found.nominal.shared_errors,
             **with_decisive_method(found.status, method).to_json(),
         )
 
@@ -94,6 +95,7 @@ class ToleranceAnswer(Answer):
     effects: dict[str, list[float]]  # by what scatters: its part of the variance by itself, and in all
     standard_error: float | None = None  # of the nominal value, by random inputs that all values have in common
     error_bound: float | None = None  # of the nominal value, relative, sampling apart
+    shared_errors: dict[str, float] = field(default_factory=dict)  # of that, those of the road
 
     def quantity(self, name: str) -> Quantity | None:
         """A number of the distribution with its unit and the errors of the values; None if it is not known."""
@@ -205,7 +207,8 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
     compared = ""
     if base is not None and base is not best and base.numbers["quantile"] > 0.0:
         own, other = best.numbers["quantile"], base.numbers["quantile"]
-        bound = improvement_bound(own, other, best.error_bound or 0.0, base.error_bound or 0.0)
+        bounds = best.error_bound or 0.0, base.error_bound or 0.0
+        bound = improvement_bound(own, other, *bounds, best.shared_errors, base.shared_errors)
         better = format_percent_size(100.0 * (1.0 - own / other), bound=bound)
         compared = f", {better} better than {base.layout} with its tolerances"
     elif base is best and len(known) > 1:

@@ -127,6 +127,7 @@ class Outcome(PartResult):
     limits: list[list[Any]] = field(default_factory=list)  # of each: value, whether it holds back, its cost, its part
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
+    shared_errors: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)  # of them, those of the road
     speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
     speed_message: str = ""  # what makes those doubtful
     in_conditions: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> own index in each
@@ -205,6 +206,7 @@ def _run(whole: Study, case: Case, threads: int) -> Outcome:
         values=_of_each(estimates, "value"),
         standard_errors=_of_each(estimates, "standard_error"),
         error_bounds=_of_each(estimates, "error_bound"),
+        shared_errors=_of_each(estimates, "shared_errors"),
         notes=notes,
         realisations={m: e.realisations for m, e in own.items() if e.realisations},
         samples={m: list(e.samples[:_MOST_SAMPLES]) for m, e in own.items() if e.samples},
@@ -308,5 +310,6 @@ def _in_condition(estimate: Estimate) -> dict[str, Any]:
         "value": estimate.value,
         "standard_error": estimate.standard_error,
         "error_bound": estimate.error_bound,
+        "shared_errors": estimate.shared_errors,
         "samples": list(estimate.samples[:_MOST_SAMPLES]),
     }

@@ -22,6 +22,7 @@ from inerter.files.study.responses import responses
 from inerter.files.study.speeds import BESIDE, asks_at_one_speed
 from inerter.files.study.study import Study
 from inerter.methods.compare import Comparison, compare_estimates
+from inerter.methods.measured_road_errors import ROAD_ERRORS
 from inerter.methods.method import Estimate
 from inerter.methods.registry import is_blind
 
@@ -124,6 +125,10 @@ class DatasetBuilder:
             bounds = outcome.error_bounds.get(method, {})
             arrays["error_bound"][number, m] = bounds.get(index, np.nan)
             arrays["other_error_bound"][number, m] = [bounds.get(other, np.nan) for other in self.study.indices]
+            if EFFECT in arrays:
+                effects = outcome.shared_errors.get(method, {})
+                arrays[EFFECT][number, m] = _of_road(effects.get(index, {}))
+                arrays[OTHER_EFFECT][number, m] = [_of_road(effects.get(other, {})) for other in self.study.indices]
             error = outcome.standard_errors.get(method, {}).get(index)
             arrays["standard_error"][number, m] = np.nan if error is None else error
             best = best or isfinite(values.get(index, np.nan))
@@ -152,6 +157,8 @@ class DatasetBuilder:
             for c, found in enumerate(known):
                 for name in ("value", "error_bound", "standard_error"):
                     arrays[f"{IN_CONDITIONS}{name}"][number, m, c] = np.nan if found[name] is None else found[name]
+                if EFFECT in arrays:
+                    arrays[f"{IN_CONDITIONS}{EFFECT}"][number, m, :, c] = _of_road(found["shared_errors"])
                 if self._uncertain and baseline is not None and found["standard_error"] is not None:
                     self._samples[IN_CONDITIONS, (number, m, c)] = np.array(found["samples"])
 
@@ -195,7 +202,12 @@ def _enter_improvements(data: xr.Dataset, baseline: str, of: str = "") -> None:
     base = base.where(np.isfinite(base))  # nothing is a share of an infinite value
     data[f"{of}improvement"][:] = (100.0 * (1.0 - values / base)).transpose(*values.dims).values
     of_base = bounds.sel(layout=baseline, drop=True)
-    widest = 100.0 * abs(values / base) * (bounds + of_base) / (1.0 - of_base)
+    errors = bounds + of_base
+    if EFFECT in data:  # of what both share, the difference counts
+        effects = data[f"{of}{EFFECT}"]
+        other = effects.sel(layout=baseline, drop=True)
+        errors = errors + (abs(effects - other) - abs(effects) - abs(other)).sum(ROAD_ERROR)
+    widest = 100.0 * abs(values / base) * errors / (1.0 - of_base)
     data[f"{of}improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*values.dims).values
 
 
@@ -243,6 +255,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "parameter": len(parameters),
         "limit": len(study.limits),
         "at_speeds.speed": len(BESIDE),
+        ROAD_ERROR: len(ROAD_ERRORS),
         CONDITION: len(study.conditions),
     }
     variables = {}
@@ -260,7 +273,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
 
 def _variables_of(study: Study) -> dict[str, _Variable]:
     """Variables of the results: those of every study, then those of what it declares."""
-    values = {**_VARIABLES, **(UNCERTAIN if is_uncertain(study) else {})}
+    values = {**_VARIABLES, **(UNCERTAIN if is_uncertain(study) else {}), **(MEASURED if is_measured(study) else {})}
     return {
         **values,
         **(LIMITED if study.limits else {}),
@@ -291,6 +304,8 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
         labels["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
     if study.road is not None and asks_at_one_speed(study):
         labels["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
+    if is_measured(study):
+        labels[ROAD_ERROR] = list(ROAD_ERRORS)
     if study.conditions:
         shares = np.array([condition.share for condition in study.conditions])
         labels[CONDITION] = (CONDITION, condition_labels(study.conditions), {"over": study.over})
@@ -300,6 +315,15 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
         attributes = {"units": sweep.unit, "long_name": sweep.words, **written}
         labels[sweep.label] = (sweep.label, list(sweep.values), attributes)
     return labels
+
+
+def is_measured(study: Study) -> bool:
+    """Whether the road of a study is the line of a measured profile, of which values have common errors."""
+    return study.road is not None and study.road.shape is not None
+
+
+def _of_road(effects: Mapping[str, float]) -> list[float]:
+    return [effects.get(name, 0.0) for name in ROAD_ERRORS]
 
 
 def is_uncertain(study: Study) -> bool:
@@ -339,12 +363,17 @@ UNCERTAIN: dict[str, _Variable] = {
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
 # names with a point, which no element can have, so that a sweep of any element has its own dimension
+EFFECT, OTHER_EFFECT, ROAD_ERROR = "road.effect", "road.other_effect", "road.error"
+MEASURED: dict[str, _Variable] = {
+    EFFECT: (("method", ROAD_ERROR), 0.0, "relative effect of an error of the road on the value"),
+    OTHER_EFFECT: (("method", "other", ROAD_ERROR), 0.0, "its effects on other indices of the same design"),
+}
 SPEEDS: dict[str, _Variable] = {
     "at_speeds.value": (("at_speeds.speed",), np.nan, "index of the same design at other speeds"),
     "at_speeds.message": ((), "", "what makes those values doubtful"),
 }
 
-_VARIED = ("value", "standard_error", "error_bound", "improvement", "improvement_bound", "improvement_error")
+_VARIED = (EFFECT, "value", "standard_error", "error_bound", "improvement", "improvement_bound", "improvement_error")
 PERCENT = {"limit_cost", "over_linear", "over_linear_error"} | {
     f"{of}improvement{end}" for of in ("", IN_CONDITIONS) for end in ("", "_bound", "_error")
 }

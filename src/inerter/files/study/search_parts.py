@@ -181,6 +181,7 @@ class RealPart(StudyPart["RealResult"]):
             error=estimate.standard_error,
             status=with_decisive_method(estimate.status, self.method),
             error_bound=estimate.error_bound,
+            shared_errors=estimate.shared_errors,
         )
 
     def _result_of_search(self, best: Optimum, **more: Any) -> RealResult:
@@ -190,6 +191,7 @@ class RealPart(StudyPart["RealResult"]):
             error=best.estimate.standard_error,
             status=with_decisive_method(best.status, self.method),
             error_bound=best.estimate.error_bound,
+            shared_errors=best.estimate.shared_errors,
             parameters=best.parameters,
             active_bounds=best.active_bounds,
             starts=best.n_starts,
@@ -229,6 +231,7 @@ class RealResult(PartResult):
     status: str
     message: str = ""
     error_bound: float = nan  # relative, sampling apart
+    shared_errors: dict[str, float] = field(default_factory=dict)  # of that, those of the road
     kept: float = nan  # with the values of the ideal network
     kept_bound: float = nan  # relative
     kept_doubt: str = ""  # why that value is not certain

@@ -61,7 +61,10 @@ class LayoutSearch:
     def real_gain_bound(self, each: RealResult) -> float:
         """Largest error of that gain [%]."""
         base = self._real_baseline(each.method)
-        return nan if base is None else improvement_bound(each.value, base.value, each.error_bound, base.error_bound)
+        if base is None:
+            return nan
+        errors = each.error_bound, base.error_bound, each.shared_errors, base.shared_errors
+        return improvement_bound(each.value, base.value, *errors)
 
     def real_gain_status(self, each: RealResult) -> Status:
         """Reliability of the value of the baseline in that gain."""

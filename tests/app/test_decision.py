@@ -140,6 +140,14 @@ def test_a_baseline_that_is_not_among_the_designs_is_ranked_too(client: TestClie
     assert "kept" in sentences(told)[0]
 
 
+def test_a_layout_like_the_baseline_is_another_one(client: TestClient) -> None:
+    """Such as one that was just added to be changed: equal to it, and compared with it."""
+    values = {"S1": {"c": 1500.0}, "S4": {"c": 1500.0}}
+    told = ask(client, "panel/decision", study={**DOCUMENT, "layouts": {"S1": "k | c", "S4": "k | c"}}, values=values)
+    assert [(row["layout"], row["is_baseline"]) for row in told["rows"]] == [("S1", True), ("S4", False)]
+    assert "S4" in sentences(told)[0]
+
+
 def test_a_value_that_is_not_certain_is_not_an_answer(client: TestClient) -> None:
     """Linearisation of friction that sticks for much of the time is told to be inaccurate, in the verdict too."""
     document = changed(elements={"f": "100 N"})

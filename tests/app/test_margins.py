@@ -18,7 +18,14 @@ from inerter.cli.commands import run as run_command
 from inerter.cli.options import WorkOptions
 from inerter.files.common.toml import as_toml
 from inerter.methods.registry import is_blind, refuses_gaps
-from inerter.tasks.margins import MarginRequest, _break_even, _trials, compliant_springs, usual_tolerances
+from inerter.tasks.margins import (
+    MarginRequest,
+    _break_even,
+    _break_even_by,
+    _trials,
+    compliant_springs,
+    usual_tolerances,
+)
 
 VALUES = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
 FEW = changed(study={"realisations": 2})
@@ -91,6 +98,8 @@ def test_elements_of_a_real_inerter_have_words_as_names() -> None:
     assert told.sentence == f"Stiffness of the shaft of inerter b: S2 is better than S1 {told.message[21:]}."
     assert told.message == "the design is better for no stiffness from 1 kN/m to 100 MN/m"
     assert [one.parameter for one in (friction, stiffness, backlash)] == ["friction", "stiffness", "backlash"]
+    gap = _break_even_by(asked, backlash, "norm")  # of which the value is half of the backlash
+    assert gap.sentence == f"Backlash of inerter b: S2 is better than S1 {gap.message[21:]} to each side."
 
 
 @pytest.mark.marathon

@@ -242,3 +242,20 @@ def test_friction_at_an_inerter_is_offered_to_all_layouts_that_have_it(visitor: 
     page.get_by_role("button", name="Undo").click()
     page.wait_for_function(f"s2 => ({kept})().S2 === s2", arg=before["S2"])
     assert page.evaluate(kept) == {**before, "S3": joined["S3"]}
+
+
+def test_a_new_part_may_vary_where_another_of_its_kind_may(visitor: Visitor) -> None:
+    """Else a layout with it is compared at its first value with layouts at their best. It is one step to undo."""
+    page = visitor.page
+    visitor.pick("S1")
+    page.get_by_role("button", name="in parallel", exact=True).click()
+    page.get_by_role("button", name="Add a inerter").click()
+    visitor.wait_for_text("k | c | b2")
+    new = page.locator("[data-place='elements.b2']")
+    assert new.locator("input[type=checkbox]").is_checked()
+    assert new.locator("[id='entry elements.b2']").input_value() == "300 kg"
+    page.get_by_role("button", name="Add a spring").click()  # k may not vary
+    assert not page.locator("[data-place='elements.k2'] input[type=checkbox]").is_checked()
+    for text in ("k | c | b2", "k | c"):
+        page.get_by_role("button", name="Undo").click()
+        visitor.wait_for_text(text)

@@ -35,8 +35,10 @@ def decision(study: Study, body: Body) -> Answer:
     """Designs ranked by the index `index` (default: the first), and the verdict with its caveats."""
     designs = designs_of(study, body)
     baseline = baseline_of(study, body, designs)
-    if baseline is not None and baseline not in designs:
-        designs.append(baseline)
+    if baseline is not None:
+        same = [one for one in designs if one == baseline and one.layout == baseline.layout]
+        designs += [] if same else [baseline]
+        baseline = next(iter(same), baseline)
     method = decisive_method(body.get("methods") or study.evaluate)
     indices = list(body.get("indices") or study.indices)
     goal = body.get("index") or indices[0]
@@ -146,7 +148,7 @@ class _DesignComparison:
             at_bounds=at_bounds(design.free, design.values, self.study.free_units),
             modelled=modelled,
             neglected=neglected,
-            is_baseline=design == self.baseline,
+            is_baseline=design is self.baseline,
             n_elements=len(design.mechanism.strut_elements()),
         )
         self._known[id(made)] = design, found, limits
@@ -155,7 +157,7 @@ class _DesignComparison:
     def _in_conditions(self, one: DesignEstimate) -> Iterator[tuple[str, float, Estimate, Improvement | None]]:
         """Name, share (nan if none counts), goal and improvement over the baseline in each of several conditions."""
         base = self._base[0] if self._base else None
-        is_compared = base is not None and one.design != self.baseline and one.beside(base) is not None
+        is_compared = base is not None and one.design is not self.baseline and one.beside(base) is not None
         conditions, own = self.study.conditions, one.estimate.in_conditions
         if len(conditions) < 2 or not own:
             return
@@ -196,7 +198,7 @@ class _DesignComparison:
     def _index_result(self, one: DesignEstimate, i: int) -> IndexResult:
         estimate, study = one.estimate, self.study
         base = self._base[i] if self._base else None
-        two = None if base is None or one.design == self.baseline else one.beside(base)
+        two = None if base is None or one.design is self.baseline else one.beside(base)
         return IndexResult(
             index=one.index,
             title=study.index(one.index).title,

@@ -138,6 +138,11 @@ class _Trial:
         """The element, or the first of several with its label."""
         return next(one for one in self.design.mechanism().strut_elements() if one.label == self.parameter)
 
+    @property
+    def side(self) -> str:
+        """Words after a value of the element: that of a gap is half of the backlash."""
+        return " to each side" if isinstance(self.element, Gap) else ""
+
 
 def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: None) -> Margins:
     """Margins of a design: each friction, gap and compliance that it has or a real inerter has, speeds, tolerances."""
@@ -267,11 +272,11 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     if known:
         ends = [crossing.value for crossing in found.crossings]
         scatter, bound = found.standard_error, found.error_bound
-        end = range_text(found.value, found.unit, scatter, bound, ends, at_most=element.may_vanish)
+        end = range_text(found.value, found.unit, scatter, bound, ends, at_most=element.may_vanish) + trial.side
         short = f"{trial.parameter} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
     else:
-        end = message.replace("the design is better", who).rstrip(".")
+        end = message.replace("the design is better", who).rstrip(".") + trial.side
         sentence = f"{capital(trial.words)}: {end}."
     is_sure = found.status.severity is Severity.INFO
     doubt = f" Not certain: {message.rstrip('.')}." if known and not is_sure else ""

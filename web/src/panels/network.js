@@ -5,7 +5,8 @@ import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt, remo
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, mapValues, own, strutsOf, textOf } from "../state/document.js";
 import { brief, briefIn, printed, strutWords, symbolParts } from "../state/scale.js";
-import { isFreeNetwork, kindOf, layoutsWith, selectedElement, treeOf, unitOf, wrongIn } from "../library.js";
+import { isFreeNetwork, kindOf, layoutsWith, quickMethod, selectedElement, treeOf, unitOf, wrongIn }
+  from "../library.js";
 import { answerOf, strutTexts } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
 import { symbolPath } from "./sketch.js";
@@ -14,6 +15,7 @@ import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 /** @import { Tree, Path, Joint } from "../network/algebra.js" */
+/** @import { ElementEntry } from "../state/document.js" */
 /** @import { Placed, Box } from "../network/drawing.js" */
 
 const MARGIN = 14;
@@ -135,28 +137,39 @@ function present(store) {
 }
 
 /** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store
- * @param {Tree} tree @param {Path} path @param {{[name: string]: string}} [added] */
-function draw(store, tree, path, added) {
+ * @param {Tree} tree @param {Path} path @param {{[name: string]: ElementEntry}} [added] @param {string} [gesture] */
+function draw(store, tree, path, added, gesture) {
   const text = written(tree);
   store.dispatch({ type: "planted", text, tree });
-  store.change({ type: "drawn", text, added });
+  store.change({ type: "drawn", text, added }, gesture);
   store.look({ path });
+}
+
+/** Draws a tree with a new element, which may vary where another one of its kind may: else a layout that has it would
+ * be compared at its first value with others that are optimised. @param {Store} store @param {Tree} tree
+ * @param {string} name @param {ElementKind} kind @param {ElementEntry} [entry] */
+function drawNew(store, tree, name, kind, entry = kind.example) {
+  const gesture = `new ${name}`;
+  const state = store.get();
+  const { elements = {} } = state.history.present.study;
+  const [range] = Object.entries(elements).flatMap(([other, each]) =>
+    (isRange(each) && kindOf(state, other)?.key === kind.key ? [each] : []));
+  draw(store, tree, placeOf(tree, name), { [name]: entry }, gesture);
+  if (range && !isRange(entry)) store.change({ type: "freed", place: ["elements", name], name, from: range.from,
+    to: range.to, method: quickMethod(state)?.name }, gesture);
+  store.dispatch({ type: "rested" });
 }
 
 /** Where an element of this name stands; the last one if there are more. @param {Tree} tree @param {string} name
  * @returns {Path} */
 const placeOf = (tree, name) => leaves(tree).findLast((one) => one.name === name)?.path ?? [];
 
-/** A part of this name joined to what is selected. @param {Editing} editing @param {string} name
- * @param {{[name: string]: string}} [added] @param {"join" | "replace"} [by] */
-function add({ store, how }, name, added, by = "join") {
+/** A part of this name joined to what is selected, or in its place. @param {Editing} editing @param {string} name
+ * @param {"join" | "replace"} [by] @param {(tree: Tree) => void} [show] */
+function add({ store, how }, name, by = "join", show = (tree) => draw(store, tree, placeOf(tree, name))) {
   const { tree, path } = present(store);
-  if (tree === null) {
-    if (textOf(store.get().history.present).trim() === "") draw(store, leaf(name), [], added);
-    return;
-  }
-  const next = by === "replace" ? replaceAt(tree, path, leaf(name)) : joinAt(tree, path, how, leaf(name));
-  draw(store, next, placeOf(next, name), added);
+  if (tree !== null) show(by === "replace" ? replaceAt(tree, path, leaf(name)) : joinAt(tree, path, how, leaf(name)));
+  else if (textOf(store.get().history.present).trim() === "") show(leaf(name));
 }
 
 /** A new element of a kind, with the value of one of its kind that it replaces, else of its example.
@@ -168,7 +181,7 @@ function addKind(editing, kind, by) {
   const like = old !== null && kindOf(store.get(), old)?.key === kind.key;
   const entry = like ? store.get().history.present.study.elements?.[old] : kind.example;
   const beside = by === "replace" || !kind.switches ? null : selectedElement(store.get());
-  add(editing, name, { [name]: /** @type {string} */ (entry) }, by);
+  add(editing, name, by, (tree) => drawNew(store, tree, name, kind, entry));
   if (beside !== null) offerElsewhere(editing, beside, name);
 }
 
@@ -252,7 +265,7 @@ function PartMenu({ editing, off, selected }) {
       onChange=${pickHandler((name) => {
       const kind = kinds.find((each) => `new ${each.key}` === name);
       if (kind) addKind(editing, kind, "replace");
-      else add(editing, name, undefined, "replace");
+      else add(editing, name, "replace");
     })}>
       <option value="">…</option>
       ${kinds.map((kind) => html`<option key=${kind.key}
@@ -468,7 +481,7 @@ function dropKind(event, store, setOver) {
   event.stopPropagation();
   const name = newName(store, kind);
   const next = joinAt(tree, target.path, target.kind, leaf(name), target.before);
-  draw(store, next, placeOf(next, name), { [name]: kind.example });
+  drawNew(store, next, name, kind);
 }
 
 /** Dragging a symbol to another place of the network. @param {Store} store @param {PointerEvent} down

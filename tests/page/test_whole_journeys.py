@@ -226,7 +226,7 @@ def test_a_search_is_stopped_and_resumed(
     assert "so far" in job.inner_text()
     person.press(job.get_by_role("button", name="Resume"))
     page.wait_for_selector(".job[data-state=done] [data-network]", timeout=240_000)
-    library = it.search(it.load_study(path).design("any"), J1, it.Norm(), jobs=2)
+    library = it.search(it.load_study(path).design("any"), J1, it.Norm())
     assert f"of {library.n_networks} networks" in job.inner_text()
     (first,) = [one for one in json.loads(nothing.get("work"))["work"] if one["kind"] == "search"]
     (searched,) = json.loads(nothing.get(f"work/{first['id']}/result"))["searches"]

@@ -107,15 +107,15 @@ def test_rigs_at_rest_are_the_same_in_every_frame(seeds: range, least: int) -> N
     assert len(found) > least
 
 
-@pytest.mark.parametrize("seed", range(20))
+REFUSED = (0, 11, 16, 20)  # a gap between inertias, or a node between gaps that nothing holds
+
+
+@pytest.mark.parametrize("seed", [seed for seed in range(24) if seed not in REFUSED])
 def test_a_car_at_rest_is_lifted_by_its_road(seed: int) -> None:
     network, rng = device(seed)
     strut = Spring(5e4, "k") | Damper(1e3, "c") | network if rng.random() < 0.5 else network
-    try:
-        car = it.QuarterCar(200.0, 30.0, 1.5e5, strut)
-        low, high = started(car, [0.0]), started(car, [0.4])
-    except MechanismError:
-        pytest.skip("a gap between inertias")
+    car = it.QuarterCar(200.0, 30.0, 1.5e5, strut)
+    low, high = started(car, [0.0]), started(car, [0.4])
     assert differ(low, high, 0.4) < CLOSE
     system = piecewise(car)
     g = initial_state(system, np.array([0.4, 0.0]), "rest")[system.motions[0].shape[1] :]
@@ -178,12 +178,7 @@ def test_a_turned_rig_moves_the_same(seed: int) -> None:
     network, rng = device(300 + seed)
     shaft = Spring(4e5, "shaft") | Damper(2e3, "loss")
     motion = it.sine(2e-3, rng.uniform(1.0, 8.0), phase=rng.uniform(0.0, 6.0))
-    try:
-        runs = [
-            it.simulate(Rig(d), displacement=motion, duration=0.3) for d in (shaft - network, turned(network) - shaft)
-        ]
-    except MechanismError:
-        pytest.skip("a gap between inertias")
+    runs = [it.simulate(Rig(d), displacement=motion, duration=0.3) for d in (shaft - network, turned(network) - shaft)]
     one, other = (run["device_force"] for run in runs)
     assert one == pytest.approx(other, rel=1e-9, abs=1e-9 * np.abs(one).max() + 1e-12)
     listed = [sorted((round(e.time, 9), e.element, e.after) for e in run.events) for run in runs]

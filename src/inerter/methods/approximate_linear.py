@@ -39,6 +39,7 @@ from inerter.norms.hinf import GainPeak
 from inerter.simulation.event_driven import KERNELS
 from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import InputPath
+from inerter.systems.outputs import input_names
 from inerter.systems.piecewise import piecewise
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
@@ -198,8 +199,7 @@ class ApproximateLinear(FormerMethodNames):
         default = NoiseExcitation() if self._raw else MultisineExcitation()
         excitation = (self.road if on_road else self.force) or default
         rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(driven, paths[0].input))
-        inputs = [*(r.name for r in driven.roads), *(f.name for f in driven.forces)]
-        return ExcitedInputs(excitation, rms, tuple(delays.get(name) for name in inputs))
+        return ExcitedInputs(excitation, rms, tuple(delays.get(name) for name in input_names(driven)))
 
     def _equivalent_linear_model(
         self, mechanism: Mechanism, definition: IndexDefinition

@@ -25,6 +25,7 @@ from inerter.simulation.periodic_steady_state import FEW_PERIODS
 from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
 from inerter.systems.input_paths import InputPath
+from inerter.systems.outputs import input_names
 from inerter.systems.piecewise import PiecewiseSystem
 
 Array = NDArray[np.float64]
@@ -115,8 +116,7 @@ def random_excitation(
     """
     mechanism, size = system.mechanism, definition.drive.amplitude_density
     paths = definition.input_paths(mechanism)
-    names = [*(r.name for r in mechanism.roads), *(f.name for f in mechanism.forces)]
-    reached = tuple(tuple(a for a in paths if a.input == name) for name in names)
+    reached = tuple(tuple(a for a in paths if a.input == name) for name in input_names(mechanism))
     road = getattr(definition.drive, "road", None) or Road((size / (2.0 * math.pi)) ** 2, 1.0)
     roads = len(mechanism.roads)
     return RandomExcitation(

@@ -51,12 +51,12 @@ def test_break_even_values_are_by_methods_that_model_the_element(told: dict[str,
     by = {one["parameter"]: one for one in told["break_even"]}
     assert {name: one["is_present"] for name, one in by.items()} == {
         "f": True,
-        "stiffness": False,
-        "backlash": False,
+        "shaft_stiffness": False,
+        "inerter_backlash": False,
     }
     assert not is_blind(by["f"]["method"])
-    assert not is_blind(by["backlash"]["method"])
-    assert not refuses_gaps(by["backlash"]["method"])
+    assert not is_blind(by["inerter_backlash"]["method"])
+    assert not refuses_gaps(by["inerter_backlash"]["method"])
     for one in by.values():
         assert one["sentence"].endswith(".")
         words = one["parameter"] if one["is_present"] else one["sentence"].partition(" of ")[0]
@@ -81,8 +81,8 @@ def test_break_even_values_are_those_of_the_library(told: dict[str, Any]) -> Non
         strut=it.Spring(20e3) | it.Damper(3000.0) - ((k | c) - b | it.Friction(20.0)),
     )
     shaft = it.break_even(real, car("S1"), study.index("J1"), parameter="k_shaft", method=it.Norm(), bounds=(1e3, 1e8))
-    assert by["stiffness"]["method"] == "norm"
-    value = by["stiffness"]["value"]
+    assert by["shaft_stiffness"]["method"] == "norm"
+    value = by["shaft_stiffness"]["value"]
     assert (np.nan if value is None else value) == pytest.approx(shaft.value, rel=1e-9, nan_ok=True)
 
 
@@ -97,9 +97,26 @@ def test_elements_of_a_real_inerter_have_words_as_names() -> None:
     told = _break_even(asked, stiffness)
     assert told.sentence == f"Stiffness of the shaft of inerter b: S2 is better than S1 {told.message[21:]}."
     assert told.message == "the design is better for no stiffness from 1 kN/m to 100 MN/m"
-    assert [one.parameter for one in (friction, stiffness, backlash)] == ["friction", "stiffness", "backlash"]
+    labels = [one.parameter for one in (friction, stiffness, backlash)]
+    assert labels == ["inerter_friction", "shaft_stiffness", "inerter_backlash"]
     gap = _break_even_by(asked, backlash, "norm")  # of which the value is half of the backlash
     assert gap.sentence == f"Backlash of inerter b: S2 is better than S1 {gap.message[21:]} to each side."
+
+
+def test_the_friction_of_an_inerter_is_not_that_of_the_baseline() -> None:
+    """The baseline keeps its friction while that of the inerter varies, which has a name of its own in the library."""
+    elements = {**DOCUMENT["elements"], "f": "300 N"}
+    study = study_from({**DOCUMENT, "elements": elements, "layouts": {"S1": "k | c | f", "S2": "k | c | b"}})
+    design = study.design("S2").with_values({"c": 1500.0, "b": 10.0})
+    baseline = study.design("S1").with_values({"c": 1500.0})
+    asked = MarginRequest(study, "S2", design, "S1", baseline, "J3", "statistical-linearisation")
+    found = _break_even(asked, next(iter(_trials(asked))))
+    c, b, f = it.Damper(1500.0), it.Inerter(10.0), it.Friction(0.0, name="own")
+    real = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(20e3) | c | (b | f))
+    method, index = study.method(found.method), study.index("J3")
+    alone = it.break_even(real, baseline, index, parameter="own", method=method)
+    assert 200.0 < alone.value < 400.0
+    assert (found.value, found.status) == (alone.value, alone.status.kind.value)
 
 
 @pytest.mark.marathon

@@ -348,7 +348,7 @@ def _status(
     ranges: Sequence[BudgetRange], end: Crossing | None, statuses: Sequence[Status], parameter: str, unit: str
 ) -> Status:
     """The worst status of all compared estimates; without an end, the values for which the design is better."""
-    bad, said = worst_of(statuses), _sentence(ranges, parameter, unit)
+    bad, said = worst_of(statuses), better_clause(ranges, parameter, unit)
     if not bad.ok:
         is_compared = any(one.better is not None for one in ranges)
         tentative = f". Nevertheless, {said}" if end is None and is_compared else ""
@@ -356,15 +356,17 @@ def _status(
     return OK if end is not None else Status(StatusKind.UNBOUNDED, said)
 
 
-def _sentence(ranges: Sequence[BudgetRange], parameter: str, unit: str) -> str:
-    """Clause on the values for which the design is better."""
+def better_clause(
+    ranges: Sequence[BudgetRange], parameter: str, unit: str, better: str = "the design is better"
+) -> str:
+    """Clause on the values of `parameter`, in words, for which a design is `better`."""
     whole = f"{parameter} {_format_range(ranges[0].lower, ranges[-1].upper, unit)}"
-    better = [_format_range(one.lower, one.upper, unit) for one in ranges if one.better]
+    where = [_format_range(one.lower, one.upper, unit) for one in ranges if one.better]
     if all(one.better for one in ranges):
-        return f"the design is better for every {whole}"
-    if not better:
-        return f"the design is better for no {whole}"
-    return f"the design is better {' and '.join(better)} only, of all {whole}"
+        return f"{better} for every {whole}"
+    if not where:
+        return f"{better} for no {whole}"
+    return f"{better} {' and '.join(where)} only, of all {whole}"
 
 
 def _format_range(lower: float, upper: float, unit: str) -> str:

@@ -22,6 +22,7 @@ from inerter.methods.registry import brief_words_of, is_blind, methods_that, ref
 from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Series, Spring
 from inerter.networks.elements.algebra import CombinedNetwork
+from inerter.optimisation.budget import better_clause
 from inerter.statements import Severity
 from inerter.tasks.budgets import element_break_even, range_text
 from inerter.uncertainty.tolerance import tolerance_analysis
@@ -55,7 +56,7 @@ class MarginRequest:
         return title_with_name(self.study.index(self.index).title, self.index)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class BreakEvenMargin:
     """Break-even value of one element [SI], None if there is none; `is_present` is False for one of a real inerter."""
 
@@ -63,13 +64,13 @@ class BreakEvenMargin:
     is_present: bool
     unit: str
     method: str
-    value: float | None
-    standard_error: float | None
-    interval: tuple[float, float] | None
-    error_bound: float | None
+    value: float | None = None
+    standard_error: float | None = None
+    interval: tuple[float, float] | None = None
+    error_bound: float | None = None
     status: str
     message: str
-    short: str  # "f up to 414 +- 18 N", "friction up to 390 +- 17 N" of one of a real inerter; empty without a value
+    short: str = ""  # "f up to 414 +- 18 N", "friction up to 390 +- 17 N" of one of a real inerter
     sentence: str
 
 
@@ -128,8 +129,9 @@ class Margins:
 class _Trial:
     """Element whose break-even value is computed, in a design that has it."""
 
-    parameter: str  # its label; that of an element of a real inerter is a word
+    parameter: str  # its label
     words: str
+    brief: str
     design: Vehicle
     is_present: bool
 
@@ -181,42 +183,40 @@ def _trials(asked: MarginRequest) -> Iterator[_Trial]:
     labels = [label for label, e in own.items() if e.may_vanish or label in compliant or label in budgets]
     for label in labels:
         what = "stiffness" if label in compliant else own[label].key
-        yield _Trial(label, f"{what} {label}", asked.design, is_present=True)
+        yield _Trial(label, f"{what} {label}", label, asked.design, is_present=True)
     present = {own[label].key for label in labels}
     inerters = [label for label, element in own.items() if isinstance(element, Inerter)]
     if not inerters:
         return
     real, of = RealInerter(), format_list(inerters)
     if Friction.key not in present:
-        yield _hypothetical(asked, own, Friction(0.0), "friction", f"inerter {of}", lambda b, new: b | new)
+        yield _hypothetical(asked, Friction(0.0), "friction", "inerter", of, lambda b, new: b | new)
     if not compliant:
         shaft, damping = Spring(real.stiffness), Damper(real.damping)
-        yield _hypothetical(
-            asked, own, shaft, "stiffness", f"the shaft of inerter {of}", lambda b, new: (new | damping) - b
-        )
+        yield _hypothetical(asked, shaft, "stiffness", "shaft", of, lambda b, new: (new | damping) - b)
     if Gap.key not in present:
-        yield _hypothetical(asked, own, Gap(0.0), "backlash", f"inerter {of}", lambda b, new: new - b)
+        yield _hypothetical(asked, Gap(0.0), "backlash", "inerter", of, lambda b, new: new - b)
 
 
 def _hypothetical(
     asked: MarginRequest,
-    own: Mapping[str, Element],
     element: Element,
     what: str,
-    of: str,
+    place: str,
+    inerters: str,
     join: Callable[[Element, Element], Network],
 ) -> _Trial:
-    """Trial with an element of a real inerter joined to each inerter of the struts."""
-    name = what
-    while name in own:
+    """Trial with an element of a real inerter, at its `place` there, joined to each inerter of the struts."""
+    name, own = f"{place}_{what}", {one.label for one in asked.design.mechanism().strut_elements()}
+    while name in own.union(one.label for one in asked.baseline.mechanism().elements()):
         name += "_"
     new = element.of(element.value, name)
 
     def change(part: Element) -> Network:
         return join(part, new) if isinstance(part, Inerter) and part.label in own else part
 
-    design = with_elements(asked.design, change)
-    return _Trial(name, f"{what} of {of}", design, is_present=False)
+    of = f"inerter {inerters}" if place == "inerter" else f"the {place} of inerter {inerters}"
+    return _Trial(name, f"{what} of {of}", what, with_elements(asked.design, change), is_present=False)
 
 
 def compliant_springs(network: Network) -> set[str]:
@@ -254,45 +254,43 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         message = str(error).rstrip(".")
         sentence = f"{capital(trial.words)}: break-even value not computed ({message})."
         return BreakEvenMargin(
-            trial.parameter,
-            trial.is_present,
-            element.unit,
-            method,
-            None,
-            None,
-            None,
-            None,
-            StatusKind.FAILED.value,
-            message,
-            "",
-            sentence,
+            parameter=trial.parameter,
+            is_present=trial.is_present,
+            unit=element.unit,
+            method=method,
+            status=StatusKind.FAILED.value,
+            message=message,
+            sentence=sentence,
         )
     known, short, message = isfinite(found.value), "", found.status.message
     who = f"{asked.layout} is better than {asked.baseline_layout}"
+    if found.status.kind is StatusKind.UNBOUNDED:
+        message = better_clause(found.ranges, trial.brief, found.unit)
     if known:
         ends = [crossing.value for crossing in found.crossings]
         scatter, bound = found.standard_error, found.error_bound
         end = range_text(found.value, found.unit, scatter, bound, ends, at_most=element.may_vanish) + trial.side
-        short = f"{trial.parameter} {end}"
+        short = f"{trial.brief} {end}"
         sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
+    elif found.status.kind is StatusKind.UNBOUNDED:
+        sentence = f"{capital(trial.words)}: {better_clause(found.ranges, trial.brief, found.unit, who)}{trial.side}."
     else:
-        end = message.replace("the design is better", who).rstrip(".") + trial.side
-        sentence = f"{capital(trial.words)}: {end}."
+        sentence = f"{capital(trial.words)}: {message.rstrip('.')}."
     is_sure = found.status.severity is Severity.INFO
     doubt = f" Not certain: {message.rstrip('.')}." if known and not is_sure else ""
     return BreakEvenMargin(
-        trial.parameter,
-        trial.is_present,
-        found.unit,
-        method,
-        found.value if known else None,
-        number_or_none(found.standard_error),
-        found.interval if all(map(isfinite, found.interval)) else None,
-        number_or_none(found.error_bound),
-        found.status.kind.value,
-        message,
-        short,
-        f"{sentence}{doubt}",
+        parameter=trial.parameter,
+        is_present=trial.is_present,
+        unit=found.unit,
+        method=method,
+        value=found.value if known else None,
+        standard_error=number_or_none(found.standard_error),
+        interval=found.interval if all(map(isfinite, found.interval)) else None,
+        error_bound=number_or_none(found.error_bound),
+        status=found.status.kind.value,
+        message=message,
+        short=short,
+        sentence=f"{sentence}{doubt}",
     )
 
 

@@ -20,6 +20,8 @@ from inerter import Damper, Friction, Gap, Inerter, Spring, simulate
 from inerter.errors import DesignError, MechanismError, PerformanceIndexError, SimulationError
 from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import GuardRole, StatisticalRole, SwitchRole
+from inerter.simulation.event_driven import start_finely
+from inerter.simulation.inputs import tabulate
 from inerter.systems.piecewise import piecewise, with_element_values
 
 MASS, STIFFNESS = 10.0, 4000.0  # 20 rad/s
@@ -358,3 +360,11 @@ def test_a_constant_force_changes_no_peak_gain():
     assert moved.status.ok
     assert moved.value == pytest.approx(plain.value, rel=1e-5)
     assert moved.peaks[0].omega == pytest.approx(plain.peaks[0].omega, rel=1e-2)
+
+
+def test_no_state_beyond_an_infinite_limit_is_tried_for_the_length_of_a_step():
+    system = piecewise(oscillator(Spring(STIFFNESS) | Damper(40.0) - OneWay(0.0) | Friction(5.0)))
+    table = tabulate([pushed(0.0)], [0.0], 0.1, 1e-3)
+    begun = start_finely(system, table, np.zeros(system.order))
+    assert begun.modes.state[: begun.count].tolist() == [[-1, 1]]
+    assert np.all(np.isfinite(begun.modes.maps))

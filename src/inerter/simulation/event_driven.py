@@ -299,7 +299,8 @@ def start_finely(
 def _parts_of_a_step(begun: Integration) -> int:
     """Number of parts of a step in each of which the fastest motion known can be resolved; 1 if they were too many."""
     if begun.count == 0 and begun.system.nonlinear:
-        begun.build(np.ones(len(begun.system.nonlinear), dtype=np.int64))  # all slip, or touch
+        reached = np.isfinite(begun.mechanics.limits)
+        begun.build(np.where(reached[:, 1], 1, np.where(reached[:, 0], -1, 0)))  # all slip, or touch
     fastest = begun.table.step / float(begun.modes.reach[: begun.count].min(initial=np.inf))
     parts = math.ceil(fastest) if fastest > _FAST else 1
     return parts if parts <= _MOST_PARTS and parts * begun.table.value.size <= _MOST_ENTRIES else 1

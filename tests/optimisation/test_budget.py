@@ -85,6 +85,23 @@ def test_friction_budget_by_a_root_and_larger_for_a_worse_baseline():
     assert budgets == sorted(budgets)
 
 
+def test_an_element_that_is_called_as_a_kind_is_no_other_one():
+    """A label of the design is a label in the baseline too, and a kind is all of the kind there."""
+
+    def found(parameter, label, size, others):
+        design = paper_quarter_car(Spring(20e3) | Damper(1500.0) | Inerter(10.0) | Friction(size, label))
+        baseline = Spring(20e3) | Damper(1500.0)
+        for name, other in others.items():
+            baseline |= Friction(other, name)
+        return break_even(design, paper_quarter_car(baseline), J3, parameter=parameter, method=Linearisation())
+
+    alone = found("own", "own", 0.0, {"f": 300.0})
+    assert 200.0 < alone.value < 400.0
+    assert found("friction", "friction", 0.0, {"f": 300.0}).value == alone.value
+    several = found("friction", "own", 50.0, {"first": 200.0, "second": 100.0})
+    assert found("friction", "own", 50.0, {"friction": 200.0, "second": 100.0}).ranges == several.ranges
+
+
 def with_inertance(friction, damping=3000.0):
     return paper_quarter_car(Spring(40e3) | Damper(damping) | Inerter(20.0) | Friction(friction, "f"))
 

@@ -102,11 +102,11 @@ def break_even(
     """The values of `parameter` for which `design` has a lower `index` than `baseline`.
 
     `parameter` names elements of the struts, or of tyres, by their label, or is "friction" or "gap" for all of them.
-    Where the baseline has it too, it changes there in the same way, which gives the crossing of two curves over a
-    stiffness. Values between `bounds` (SI; by default a thousandth to a thousand times the present value) are evaluated
-    on a logarithmic grid, and each change of sign is located by Brent's method, on the same roads throughout. The
-    standard error of a crossing is that of the difference, over the slope, as is its error bound. An `executor` shares
-    the roads, as that of `evaluate` does.
+    Where the baseline has it too, by label or by kind as in the design, it changes there in the same way, which gives
+    the crossing of two curves over a stiffness. Values between `bounds` (SI; by default a thousandth to a thousand
+    times the present value) are evaluated on a logarithmic grid, and each change of sign is located by Brent's method,
+    on the same roads throughout. The standard error of a crossing is that of the difference, over the slope, as is its
+    error bound. An `executor` shares the roads, as that of `evaluate` does.
 
     Two crossings between neighbouring points of the grid are not detected: narrow the bounds where that is possible.
 
@@ -152,11 +152,13 @@ def _budget(
     known: dict[float, Comparison] = {}
     exact = method.nonlinearity_support is NonlinearitySupport.NEITHER
     fixed = _with_fixed_roads(design, index, method)
-    same = None if _has_element(baseline, parameter) else evaluate(baseline, index, fixed)
+    by_label = chosen[0].label == parameter
+    same = None if _has_element(baseline, parameter, by_label) else evaluate(baseline, index, fixed)
 
     def designs_at(logarithm: float) -> tuple[Vehicle, Vehicle]:
         value = float(np.exp(logarithm))
-        return with_element(design, parameter, value), baseline if same else with_element(baseline, parameter, value)
+        changed = with_element(design, parameter, value)
+        return changed, baseline if same else with_element(baseline, parameter, value, by_label)
 
     def by_samples(logarithm: float) -> Comparison:
         if logarithm not in sampled:
@@ -202,23 +204,25 @@ def _budget(
     )
 
 
-def with_element(vehicle: Vehicle, parameter: str, value: float) -> Vehicle:
+def with_element(vehicle: Vehicle, parameter: str, value: float, by_label: bool | None = None) -> Vehicle:
     """The vehicle with another value (SI) of the elements that `parameter` names.
+
+    It is a label if `by_label`, a kind if not, and for None a label where an element has it.
 
     Raises `DesignError` for an unknown element, or for elements of several kinds.
     """
     vehicle = to_editable(vehicle)
-    chosen = {id(element) for element in _elements(vehicle, parameter)}
+    chosen = {id(element) for element in _elements(vehicle, parameter, by_label)}
     return with_elements(vehicle, lambda element: element.with_value(value) if id(element) in chosen else element)
 
 
-def _elements(vehicle: Vehicle, parameter: str) -> list[Element]:
+def _elements(vehicle: Vehicle, parameter: str, by_label: bool | None = None) -> list[Element]:
     """The elements of a name; raises `DesignError` for an unknown name, or elements of several kinds."""
     in_struts, in_tyres = mounted_elements(vehicle)
     all_elements = [*in_struts, *in_tyres]
     named = [e for e in in_struts if e.label == parameter] or [e for e in in_tyres if e.label == parameter]
     kind: list[Element] = [e for e in all_elements if e.may_vanish and e.key == parameter]
-    chosen = named or kind
+    chosen = (named or kind) if by_label is None else named if by_label else kind
     if not chosen:
         labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
         raise DesignError(
@@ -238,9 +242,9 @@ def _kinds() -> str:
     return " or ".join(f'"{kind.key}"' for kind in ELEMENTS.values() if kind.may_vanish)
 
 
-def _has_element(vehicle: Vehicle, parameter: str) -> bool:
+def _has_element(vehicle: Vehicle, parameter: str, by_label: bool) -> bool:
     try:
-        return bool(_elements(vehicle, parameter))
+        return bool(_elements(vehicle, parameter, by_label))
     except DesignError:
         return False
 

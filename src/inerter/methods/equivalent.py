@@ -39,6 +39,7 @@ from inerter.systems.descriptor import Descriptor, close, describe
 from inerter.systems.graph import full_graph, linear_graph, switching
 from inerter.systems.input_paths import InputPath, apply_excitation, inputs_of
 from inerter.systems.outputs import force_of, stroke_of, velocity_of
+from inerter.systems.structure import once_per_structure
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
@@ -162,7 +163,7 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
         return map_elements(mount.network, to_damper)
 
     other = mechanism.with_networks(replace_frictions)
-    moving = {branch.label for branch in linear_graph(other).branches}
+    moving = _linear_labels(other)
     names = tuple(name for name in found if name in moving)
     frictions = [found[name][1] for name in names]
     springy = {id(element) for mount in mechanism.mounts() for element in _behind_springs(mount.network)}
@@ -180,6 +181,12 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
         design=tuple(mechanism.free_values()),
         scale=scale,
     )
+
+
+@once_per_structure
+def _linear_labels(mechanism: Mechanism) -> frozenset[str]:
+    """Labels of the elements that the linear model has."""
+    return frozenset(branch.label for branch in linear_graph(mechanism).branches)
 
 
 def _behind_springs(network: Network) -> Iterator[Element]:

@@ -72,6 +72,8 @@ class EquivalentLinearModel:
 
     def at_inputs(self, speeds: Array) -> LinearSystem:
         """Equivalent linear model with the inputs of the mechanism instead of the sources."""
+        if inputs_of(self.problem.paths) == self.problem.unfiltered.inputs:  # each is a source
+            return close(self.problem.descriptor, self._dampers(speeds))
         names = [output.output for output in self.problem.definition.outputs]
         paths = self.problem.definition.input_paths(self.mechanism)
         descriptor = with_output_filters(

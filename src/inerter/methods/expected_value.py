@@ -175,12 +175,13 @@ class ExpectedValue(FormerMethodNames):
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]
         definition = with_convention_filters(conventions, mechanism, index.definition(mechanism))
-        linear = _linear(vehicle, definition, conventions)
         system = piecewise(definition.drive.excited_mechanism(mechanism))
         if not _is_held(system, definition, conventions) and not is_nonlinear(system):
+            linear = _linear(vehicle, definition, conventions)
             assert linear is not None
             return replace(linear.estimate({}), standard_error=0.0)
         if definition.is_peak:
+            linear = _linear(vehicle, definition, conventions)
             return self._peak_gain(vehicle, index, system, definition, linear, pool)
         wanted = self.realisations or (_FEWEST if self.relative_error else _DEFAULT)
         design = on_roads(system, definition, conventions, self.seed, self.period)

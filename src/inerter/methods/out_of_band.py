@@ -44,6 +44,7 @@ from inerter.methods.realisations import (
 from inerter.methods.steady_squares import mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
+from inerter.systems.linear import LinearSystem
 from inerter.systems.piecewise import PiecewiseSystem
 from inerter.work.running import map_items
 
@@ -216,7 +217,7 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
         return OutOfBandContribution(np.where(np.isinf(whole.outputs), np.inf, np.nan), status=whole.status)
     norms, _ = linear.problem.correct_norms(system, whole.outputs)
     lines = _lines_of(excitation)
-    gains, sampled = _squared_gains(design, speeds)
+    gains, sampled = _squared_gains(design, speeds, system)
     inside, seen = lines.power @ gains, lines.power @ sampled
     whole_band = (design.definition.drive.amplitude_density * norms) ** 2
     added = whole_band - seen
@@ -288,9 +289,10 @@ def _lines_of(excitation: RandomExcitation) -> _Lines:
     )
 
 
-def _squared_gains(design: OnRoads, speeds: Array) -> tuple[Array, Array]:
-    """Squared gains (lines, outputs) over all sources, and those of a simulation's samples, whose inputs are cubic
-    between knots.
+def _squared_gains(design: OnRoads, speeds: Array, system: LinearSystem) -> tuple[Array, Array]:
+    """Squared gains (lines, outputs) of `system`, the equivalent linear one, over all sources, and those of samples.
+
+    Samples are those of a simulation, whose inputs are cubic between knots.
 
     A line of angle a between knots becomes lines of angles a + 2 pi m, a series that falls with the fourth power: the
     transform of the cubics through values and slopes. Samples see all of them as one. Knots are at the same instants
@@ -301,7 +303,7 @@ def _squared_gains(design: OnRoads, speeds: Array) -> tuple[Array, Array]:
     assert linear is not None
     lines = _lines_of(excitation)
     omega, sources = lines.omega, list(dict.fromkeys(linear.problem.sources))
-    here = modal_response(linear.system(speeds), omega, linear.problem.pade_order)
+    here = modal_response(system, omega, linear.problem.pade_order)
     here = linear.problem.with_true_densities(here, omega)
     at_once = linear.at_inputs(speeds)
     responses = modal_response(at_once, lines.images.ravel(), within=_IMAGES_WITHIN)
@@ -345,11 +347,14 @@ def _mostly_beyond(share: float) -> Status:
 def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, pool: Executor) -> Estimate:
     """Estimate over `wanted` roads, or over as many as the relative standard error requires."""
     design, found, missing = long_enough(design, pool)
+    is_known = bool(np.all(np.isfinite(missing.power)))
+    if is_known and len(found) < wanted:
+        found += design.runs(len(found), wanted, pool)
     while True:
         estimate = _average_index(design, found, missing)
         if relative_error is not None and len(found) >= wanted and np.isfinite(estimate.value):
             wanted = _enough(np.array(estimate.samples), relative_error)
-        if len(found) >= wanted or not np.all(np.isfinite(missing.power)):
+        if len(found) >= wanted or not is_known:
             return _with_error_reached(estimate, relative_error)
         found += design.runs(len(found), wanted, pool)
 

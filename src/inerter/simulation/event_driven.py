@@ -112,7 +112,7 @@ class Integration:
 
     def ended_on(self, table: InputTable) -> None:
         """Refer to `table`, of which its own is a refined one, at the end of both: less to keep with a trajectory."""
-        self.table, self.knots = table, knots(table)
+        self.table, self.knots = table, table.knots
         self.motion.place["segment"] = table.time.size - 1
 
     def go_on_from(self, ending: FinalState) -> None:
@@ -178,7 +178,7 @@ class Integration:
         """Change of the state since `before`, relative to the largest velocity, or position, so far."""
         na, n = self.system.motions[0].shape[1], self.system.order
         change = np.abs(self.state - before)
-        scale = np.max(np.abs([self.state, before, self.motion.scale]), axis=0)  # the last knows events alone
+        scale = np.maximum(np.maximum(np.abs(self.state), np.abs(before)), self.motion.scale)  # that of events
         parts = (slice(0, na), slice(na, n))
         return max(float(change[p].max(initial=0.0) / max(scale[p].max(initial=0.0), 1e-300)) for p in parts)
 
@@ -270,9 +270,9 @@ def start(
         modes=own_modes(machine.modes),
         begun=state,
         used=machine.used,
-        motion=_motion(system, state, int(np.flatnonzero(table.slot == discard)[0])),
+        motion=_motion(system, state, table.knot_of(discard)),
         room=_room(sizes, table.value.shape[1], room_of(machine.march.shape)),
-        knots=knots(table),
+        knots=table.knots,
         record=_record(sizes, state, table.samples if keep else 0),
         account=_account(system, account),
         known=machine.known,
@@ -436,11 +436,6 @@ def _room(sizes: Sizes, channels: int, line: int) -> Room:
         series=np.zeros((_TERMS + 1, n)),
         sizes=np.zeros((ORDERS, n)),
     )
-
-
-def knots(table: InputTable) -> Knots:
-    """The inputs as kernels take them."""
-    return Knots(*(getattr(table, name) for name in Knots._fields))
 
 
 def _record(sizes: Sizes, state: Matrix, samples: int) -> History:

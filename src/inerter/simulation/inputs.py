@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import SimulationError
 from inerter.formatting import format_alike, format_number, format_quantity
+from inerter.kernels.arrays import Knots
 from inerter.signals.arguments import time_tolerance
 from inerter.signals.signal import Signal, SignalSum
 from inerter.systems.piecewise import PiecewiseSystem
@@ -53,6 +54,15 @@ class InputTable:
     def samples(self) -> int:
         """Number of samples."""
         return int(self.sampled.size)
+
+    @cached_property
+    def knots(self) -> Knots:
+        """The inputs as kernels take them."""
+        return Knots(*(getattr(self, name) for name in Knots._fields))
+
+    def knot_of(self, sample: int) -> int:
+        """Number of the knot at a sample."""
+        return 0 if self.slot[0] == sample else int(np.flatnonzero(self.slot == sample)[0])
 
     @cached_property
     def repeating(self) -> InputTable:

@@ -113,7 +113,7 @@ def _repeat_period(
     """Repeat the period until the relative change of state is below `repeats`; sums are those of the last period."""
     place, last = integration.motion.place, again.time.size - 1
     integration.advance(last)
-    integration.knots = event_driven.knots(again)
+    integration.knots = again.knots
     place["settled"] = -1  # a jump at the start is one at the end of the period before
     mismatch, periods = np.inf, 1
     while integration.status.ok and periods < most and mismatch > repeats:

@@ -150,10 +150,10 @@ def _claim_5(curves: Curves) -> Claim:
     return Claim(5, parts, note=f"Evaluated up to k = {kilo([_SOFT], '', 0)} kN/m.")
 
 
-def _worst(curves: Curves, layout: str, kinds: Sequence[str], index: str) -> ClaimPart:
-    """Whether the last kind of a layout is nowhere better than any of the others."""
-    both = layout + kinds[-1]
-    gaps = [curves.uncertain_excess(layout + kind, both, index) for kind in kinds[:-1]]
+def _worst(curves: Curves, layout: str, index: str) -> ClaimPart:
+    """Whether a layout with friction and elasticity is nowhere better than with one or none of them."""
+    both = f"{layout}-soft-10N"
+    gaps = [curves.uncertain_excess(layout + kind, both, index) for kind in ("", "-10N", "-soft")]
     every = [gap for steps in gaps for gap in steps]
     text = f"{layout}: both together are the worst{_exceptions(curves, gaps) or ' at every k'}"
     return statement(text, everywhere(every, high=WORSE), by=_percent(every), at_once=len(every))
@@ -168,7 +168,7 @@ def _claim_8(curves: Curves) -> Claim:
         ends = [within(gaps[0], low=100.0 * WORSE), within(gaps[-1], high=-100.0 * WORSE)]
         once = combined_verdict(ends) if len(found) == 1 else combined_verdict([*ends, ClaimVerdict.UNDETERMINED])
         parts.append(statement(text, once, _near(found, printed, curves.step), by=[gaps[0], gaps[-1]]))
-        parts.append(_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J1"))
+        parts.append(_worst(curves, layout, "J1"))
     return Claim(8, parts)
 
 
@@ -202,7 +202,7 @@ def _claim_9(curves: Curves) -> Claim:
 
 
 def _claim_10(curves: Curves) -> Claim:
-    parts = [_worst(curves, layout, ("", "-10N", "-soft", "-soft-10N"), "J5") for layout in _LAYOUTS]
+    parts = [_worst(curves, layout, "J5") for layout in _LAYOUTS]
     more = curves.uncertain_excess("S3-soft", "S3-10N", "J5")
     counts = [
         sum(within(gap.times(sign), low=WORSE, comparisons=len(more)) is ClaimVerdict.SHOWN for gap in more)

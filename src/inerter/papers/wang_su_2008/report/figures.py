@@ -88,7 +88,7 @@ def draw_figure_14(results: xr.Dataset, folder: Path) -> list[Path]:
                     f"({'abcdef'[2 * row + column]}) {capital(index_title(results, index))}, {layout}", loc="left"
                 )
                 ax.set_ylabel(axis_label(f"Optimal {index}", unit))
-        _finish(axes, results, 2)
+        _finish(axes, results)
         add_legend(figure, axes)
         return save(figure, folder, FIGURE_14, pdf=True)
 
@@ -150,7 +150,7 @@ def _values_and_improvements(results: xr.Dataset, kinds: Mapping[str, str]) -> F
             improvement.set_ylabel(axis_label(f"{index} improvement", "%"))
             for ax, letter in ((values, "ace"[row]), (improvement, "bdf"[row])):
                 ax.set_title(f"({letter}) {capital(index_title(results, index))}", loc="left")
-        _finish(axes, results, 2)
+        _finish(axes, results)
         add_legend(figure, axes, most=4)
     return figure
 
@@ -174,9 +174,10 @@ def _curves(ax: Axes, results: xr.Dataset, index: str, styles: Mapping[str, Layo
     return unit.unit
 
 
-def _finish(axes: Sequence[Axes], results: xr.Dataset, columns: int) -> None:
+def _finish(axes: Sequence[Axes], results: xr.Dataset) -> None:
+    """Abscissa of axes in two columns, with a label below the last row."""
     stiffness = choose_scale(results["k"].values, results["k"].attrs["units"])
-    for i, ax in enumerate(axes):
+    for ax in axes:
         ax.set_xlim(0.0, float(np.max(results["k"]) * stiffness.factor))
-        if i >= len(axes) - columns:
-            ax.set_xlabel(axis_label("Static stiffness k", stiffness.unit))
+    for ax in axes[-2:]:
+        ax.set_xlabel(axis_label("Static stiffness k", stiffness.unit))

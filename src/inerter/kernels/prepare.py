@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
+from itertools import count
 from threading import Lock, Thread
 from typing import TYPE_CHECKING
 
@@ -27,11 +28,12 @@ _HELPER = "from inerter.kernels.prepare import compile_requested; compile_reques
 
 
 def prepare(kernels: Iterable[Kernel], progress: ProgressCallback | None = None) -> None:
-    """Compile those of `kernels` that are not kept on disk, those that take long first, if they come first.
+    """Compile those of `kernels` that are not kept on disk, from both ends: those that take long come first.
 
     Other processes help with it, and what they do this one reads from the cache later. Should one fail, a kernel is
-    compiled where it is called. `progress` is called when a kernel is begun; without it one line
-    announces the compilation.
+    compiled where it is called. Every other process begins at the end, so that neighbours are often compiled by one:
+    parts that they share are typed once in each process. `progress` is called when a kernel is begun; without it one
+    line announces the compilation.
     """
     wanted = [kernel for kernel in dict.fromkeys(kernels) if kernel not in _SEEN]
     if wanted and compiler_mode() == TUNED:
@@ -49,13 +51,13 @@ def prepare_on(pool: Pool | None, kernels: Sequence[Kernel], progress: ProgressC
 
 
 def _compile(missing: list[Kernel], progress: ProgressCallback | None) -> None:
-    waiting, helpers = deque(enumerate(missing, 1)), min(os.cpu_count() or 1, _MOST, len(missing)) - 1
+    waiting, begun, helpers = deque(missing), count(1), min(os.cpu_count() or 1, _MOST, len(missing)) - 1
     listener = listener_here()
 
-    def next_kernels() -> Iterator[Kernel]:
+    def next_kernels(take: Callable[[], Kernel] = waiting.popleft) -> Iterator[Kernel]:
         while waiting:
             with suppress(IndexError):  # another thread has taken the last
-                number, kernel = waiting.popleft()
+                kernel, number = take(), next(begun)
                 if progress is not None:
                     progress(kernel.title, number, len(missing))
                 if listener is not None:
@@ -63,8 +65,8 @@ def _compile(missing: list[Kernel], progress: ProgressCallback | None) -> None:
                 yield kernel
 
     with announce_compilation(progress is None), told_if_long("compiling the numerical kernels"), ExitStack() as stack:
-        for _ in range(helpers):
-            stack.enter_context(_helper(next_kernels()))
+        for helper in range(helpers):
+            stack.enter_context(_helper(next_kernels(waiting.popleft if helper % 2 else waiting.pop)))
         for kernel in next_kernels():
             kernel.ready()
 

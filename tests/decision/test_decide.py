@@ -198,6 +198,16 @@ BETTER = Improvement(16.0, 0.02)
             "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.0 %).",
         ),
         (
+            [BASE, design("S3", 2.99, by=Improvement(0.3, bound=1.9))],
+            VerdictKind.ANSWER,
+            "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.3 % within errors of up to 1.9 %).",
+        ),
+        (
+            [BASE, design("S3", 2.94, by=Improvement(2.0, 0.1, bound=1.9))],
+            VerdictKind.ANSWER,
+            "S3 is 2 % better than S1 in ride comfort (J1).",
+        ),
+        (
             [BASE, design("S3", 3.3, by=Improvement(-10.0))],
             VerdictKind.ANSWER,
             "No strut is better than S1 in ride comfort (J1); S3, the next, is 10.0 % worse.",
@@ -239,6 +249,8 @@ BETTER = Improvement(16.0, 0.02)
 )
 def test_sentences(designs: list[DesignResult], answer: VerdictKind, sentence: str) -> None:
     def over(one: DesignResult, other: DesignResult) -> Improvement | None:
+        if other.is_baseline:
+            return one.goal.improvement
         percent = 100.0 * (1.0 - one.goal.value / other.goal.value)
         close = 0.0 < abs(percent) < 0.2
         return Improvement(-0.1, 0.3, is_tie=True) if close else Improvement(percent)

@@ -149,3 +149,22 @@ def test_a_single_layout_that_is_its_own_baseline_is_the_best(tmp_path, methods)
     found = run_study(load_study(tmp_path / "one.toml"), tmp_path / "results", jobs=1)
     assert best_layouts(found.data, "J1") == ["S1"]
     assert any("S1" in sentence for sentence in conclusion_sentences(found.data, found.study, found.answers))
+
+
+def test_a_difference_within_the_errors_of_the_values_is_no_improvement(tmp_path):
+    """Of statistical linearisation, by which S2 is 0.3 % better; simulated it is 1.04 ± 0.16 % worse."""
+    text = study_text(
+        'indices = ["J1"]\nevaluate = ["statistical-linearisation"]\nbaseline = "S1"',
+        vehicle='sprung_mass = "306.3 kg"\nunsprung_mass = "25.38 kg"\ntyre_stiffness = "251.6 kN/m"',
+        elements='k = "32.32 kN/m"\nc = "3.385 kN s/m"\nc2 = "2.239 kN s/m"\nf = "190.9 N"',
+        layouts='S1 = "k | c"\nS2 = "k | c2 | f"',
+    )
+    (tmp_path / "close.toml").write_text(text, encoding="utf-8")
+    found = run_study(load_study(tmp_path / "close.toml"), tmp_path / "results", jobs=1)
+    design = found.data.sel(layout="S2", index="J1").sel({"method": "statistical-linearisation"})
+    assert design.status == "ok"
+    assert 0.05 < design.improvement < design.improvement_bound
+    told = conclusion_sentences(found.data, found.study, found.answers)[0]
+    assert told.startswith(
+        "S2 is as good as S1 in ride comfort (J1), and no better (difference 0.3 % within errors of up to"
+    )

@@ -23,18 +23,22 @@ class Improvement:
 
     @property
     def is_equal(self) -> bool:
-        """Whether neither design is better: a difference that is not significant, or that rounds to 0.0 %."""
-        return self.is_tie or abs(self.percent) < NOTICEABLE
+        """Whether neither is known to be better: its size is not significant, within its error, or rounds to 0.0 %."""
+        return self.is_tie or abs(self.percent) < NOTICEABLE or abs(self.percent) <= self.bound
 
     @property
     def size(self) -> str:
-        """Size of the difference as text, without a sign."""
+        """Size of the difference as text, without a sign; with its largest error where that is not smaller."""
+        if NOTICEABLE <= abs(self.percent) <= self.bound:
+            within = f"within errors of up to {format_percent_size(self.bound)}"
+            return f"{format_percent_size(abs(self.percent), self.error)} {within}"
         return format_percent_size(abs(self.percent), self.error, self.bound)
 
     @property
     def words(self) -> str:
         """Difference in words, to follow "is" and to precede "than"."""
-        return f"{self.size} {'better' if self.percent > 0.0 else 'worse'}"
+        size = format_percent_size(abs(self.percent), self.error, self.bound)
+        return f"{size} {'better' if self.percent > 0.0 else 'worse'}"
 
 
 def percent_below(value: float, base: float) -> float:

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
+from inerter.decision.results import percent_below
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
+    bound_of,
     by_method,
     by_which,
     compared_layouts,
@@ -27,9 +29,11 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
 )
+from inerter.files.common.roads import EFFECT, ROAD_ERROR
 from inerter.formatting import format_list, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES
+from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import with_decisive_method
 from inerter.methods.ties import equally_least
 
@@ -74,10 +78,26 @@ def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     least = equally_least(values)
     if not least:
         return []
-    margins = margins_of(row, least[0])
+    lowest, margins = least[0], margins_of(row, least[0])
     names = results["layout"].values.tolist()
-    best = [i for i, value in enumerate(values) if i in least or value - values[least[0]] <= margins[i]]
+    within = [percent_below(values[lowest], value) <= largest_error(row, lowest, i) for i, value in enumerate(values)]
+    best = [i for i, v in enumerate(values) if i in least or v - values[lowest] <= margins[i] or within[i]]
     return _simplest_first(results, [names[i] for i in best])
+
+
+def largest_error(row: xr.Dataset, layout: int, base: int) -> float:
+    """Largest error of the improvement of a layout over another one [%], sampling apart; both by their numbers."""
+    pair = [row.isel(layout=number) for number in (layout, base)] if "layout" in row.dims else [row, row]
+    (value, bound), (other, other_bound) = ((float(one["value"]), bound_of(one)) for one in pair)
+    return improvement_bound(value, other, bound, other_bound, *(road_effects(one, EFFECT) for one in pair))
+
+
+def road_effects(value: xr.Dataset, name: str) -> dict[str, float]:
+    """Effects of the errors of a measured road on a value, by error; `name` is their variable."""
+    if name not in value:
+        return {}
+    effects = value[name]
+    return dict(zip(effects[ROAD_ERROR].values.tolist(), effects.values.tolist(), strict=True))
 
 
 def margins_of(row: xr.Dataset, best: int) -> list[float]:

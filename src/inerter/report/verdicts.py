@@ -25,14 +25,14 @@ from inerter.figures.labels import (
     method_label,
     methods,
 )
-from inerter.files.study.results import OTHER_EFFECT, ROAD_ERROR
+from inerter.files.common.roads import OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.study import Study
 from inerter.formatting import format_list
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
 from inerter.report.conditions import condition_names, in_condition
-from inerter.report.index_summary import margins_of
+from inerter.report.index_summary import largest_error, margins_of, road_effects
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -167,10 +167,11 @@ def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improve
     if isnan(percent):
         return None
     errors = [_relative_error(row.sel(layout=one.name)) * one.goal.value for one in (first, second)]
-    margin = _margin(row, first.name, second.name)
+    margin, names = _margin(row, first.name, second.name), np.atleast_1d(row["layout"].values).tolist()
     return Improvement(
         percent,
         100.0 * hypot(*errors) / abs(other) if all(map(isfinite, errors)) and any(errors) else nan,
+        largest_error(row, names.index(first.name), names.index(second.name)),
         is_tie=abs(own - other) <= margin + 2.0 * ACCURACY * min(abs(own), abs(other)),
     )
 
@@ -201,18 +202,12 @@ def _others(results: xr.Dataset, index: str, design: xr.Dataset, base: xr.Datase
         if design["layout"].item() != base["layout"].item() and isfinite(percent):
             pair = [one.isel(other=i) for one in (design, base)]
             widest, of_base = (float(one["other_error_bound"]) if "other_error_bound" in one else nan for one in pair)
-            bound = improvement_bound(own, reference, widest, of_base, *map(_road_effects, pair))
+            bound = improvement_bound(
+                own, reference, widest, of_base, *(road_effects(one, OTHER_EFFECT) for one in pair)
+            )
             by = Improvement(percent, bound=bound, is_tie=abs(percent) <= _TWO_SIDED * spread)
         if other != index and not (isnan(own) and isnan(reference)):
             yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
-
-
-def _road_effects(other: xr.Dataset) -> dict[str, float]:
-    """Effects of the errors of a measured road on another index, by error."""
-    if OTHER_EFFECT not in other:
-        return {}
-    effects = other[OTHER_EFFECT]
-    return dict(zip(effects[ROAD_ERROR].values.tolist(), effects.values.tolist(), strict=True))
 
 
 def _at_bounds(design: xr.Dataset) -> Iterator[str]:

@@ -33,6 +33,7 @@ from inerter.signals.road import ROAD_CLASSES, Road, RoadShape
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import TRACKS
 
+EFFECT, OTHER_EFFECT, ROAD_ERROR = "road.effect", "road.other_effect", "road.error"  # variables, dimension of results
 ROAD_QUANTITIES = sorted(fields_of(Road), key=lambda f: f.name != "speed")  # which comes first
 _LEVEL = "level"
 _FORMS = 'track = "1.5 m", level = 0.6 or wavenumber = "0.2 cycle/m"'

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import inerter
 from inerter.errors import StatusKind
+from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.cases import Case, Outcome, cases
 from inerter.files.study.conditions import CONDITION, IN_CONDITIONS, condition_labels
 from inerter.files.study.limits import each_of, is_swept, limit_text
@@ -363,7 +364,6 @@ UNCERTAIN: dict[str, _Variable] = {
     "over_linear_error": ((), np.nan, "standard error of that improvement"),
 }
 # names with a point, which no element can have, so that a sweep of any element has its own dimension
-EFFECT, OTHER_EFFECT, ROAD_ERROR = "road.effect", "road.other_effect", "road.error"
 MEASURED: dict[str, _Variable] = {
     EFFECT: (("method", ROAD_ERROR), 0.0, "relative effect of an error of the road on the value"),
     OTHER_EFFECT: (("method", "other", ROAD_ERROR), 0.0, "its effects on other indices of the same design"),

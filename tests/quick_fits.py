@@ -14,6 +14,7 @@ from inerter.identification.fit import Explanation, Localisation
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.intervals import best_fit_of
 from inerter.identification.localising import localisation_of
+from inerter.identification.models import is_rigid
 from inerter.identification.noise import uniform_whitening
 from inerter.identification.options import FitOptions
 from inerter.identification.parameter_space import space_of
@@ -30,7 +31,7 @@ def quick_fit(
     record: Record, model: Network, values: Mapping[str, float], assumed: tuple[Hypothesis, ...] = ()
 ) -> SolvedFit:
     """The best fit near these values, judged as `identify` judges it."""
-    rig, whole = Rig(model), [experiment_of(record)]
+    rig, whole = Rig(model), [experiment_of(record, rigid=is_rigid(model))]
     space = space_of(rig, assumed)
     experiments = _without_validation_part(whole, 0.2)
     problem = FitProblem(

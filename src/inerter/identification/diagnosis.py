@@ -184,7 +184,7 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
         lost = find_dropouts(e.record)
         if lost:
             record, measured = insert_samples(e.record, lost)
-            whole[id(e.record)] = (replace(experiment_of(record), tally=e.tally), measured)
+            whole[id(e.record)] = (replace(experiment_of(record, rigid=e.rigid), tally=e.tally), measured)
             places.append(tuple((loss.count, float(e.record.time[loss.after])) for loss in lost))
     if not whole:
         return None

@@ -31,7 +31,9 @@ _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts
 _AT_REST, _TURNING = 0.02, 0.3  # of the largest velocity and acceleration: a table that is at rest, not turning back
 _END = 16  # samples next to an end, at least, where filter and spline of the motion rest on its continuation
 _CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
-_KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2
+_KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2 ...
+_RIGID_KNOTS, _MOST_RIGID_KNOTS = 160.0, 5  # ... and of a rigid device: cubics are worse for accelerations ...
+_FILTERED = 0.3  # ... unless a load cell of at most this share of the sampling rate averages them over an interval
 _BARELY = 1.0  # largest pole times duration of a free motion that hardly changes over a record, as an offset does not
 
 
@@ -65,6 +67,7 @@ class Experiment:
     table: InputTable  # of the motion
     noise: float  # [N] r.m.s. of the noise of the force
     information: Matrix  # (samples,) cumulative share of the squared force of all samples kept
+    rigid: bool = False  # whether the force follows the accelerations of the table, as that of a rigid device
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
     tally: SimulationCount = field(default_factory=SimulationCount)
 
@@ -81,7 +84,7 @@ class Experiment:
         if parts == 1:
             return self.table
         if parts not in self.finer:
-            self.finer[parts] = _table(self.motion, parts)
+            self.finer[parts] = _table(self.motion, parts, _knots_per_interval(self.motion, self.rigid))
         return self.finer[parts]
 
     def with_motion(self, displacement: Matrix, velocity: Matrix) -> Experiment:
@@ -120,7 +123,7 @@ class Experiment:
         if moving:
             state = _consistent_velocities(system, state, self._first_velocity())
         count = self.size if samples is None else min(samples, self.size)
-        knots = _knots_per_interval(self.motion)
+        knots = _knots_per_interval(self.motion, self.rigid)
         integration = event_driven.start(system, _truncate(self.table_in(knots), (count - 1) * knots), state)
         parts = knots * steps_per_interval(integration)
         if parts > knots:
@@ -151,11 +154,13 @@ def free_motions(experiment: Experiment, system: PiecewiseSystem, samples: int) 
     return np.hstack([free.real, free.imag[:, poles.imag > 0.0]])
 
 
-def experiment_of(record: Record, bandwidth: float | None = None, lead: float | None = None) -> Experiment:
+def experiment_of(
+    record: Record, bandwidth: float | None = None, lead: float | None = None, rigid: bool = False
+) -> Experiment:
     """Smooth the displacement, and leave out samples at which the load cell is saturated or the motion uncertain.
 
     `lead` [s] at the start are not compared; by default none if the table starts from rest, else a tenth. A table that
-    turns back at the first sample does not start from rest.
+    turns back at the first sample does not start from rest. The force of a `rigid` device follows its accelerations.
 
     Raises `IdentificationError` for records that are too long, or `RecordError` for uneven ones.
     """
@@ -176,6 +181,8 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         table = _table(motion)
     except InerterError as error:
         raise IdentificationError(f"{record.source!r} cannot be simulated: {error}") from None
+    cell = record.force_bandwidth
+    follows = rigid and (cell is None or cell * interval > _FILTERED)
     # A sample next to a clipped one may be clipped too.
     kept = np.convolve(saturated_samples(record), np.ones(3), "same") == 0.0
     at_rest = _begins_at_rest(motion)
@@ -194,7 +201,7 @@ def experiment_of(record: Record, bandwidth: float | None = None, lead: float | 
         raise IdentificationError(
             f"Only {kept.sum()} samples of {record.source!r} can be used; a fit requires at least 50."
         )
-    return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept))
+    return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept), follows)
 
 
 def _begins_at_rest(motion: Motion) -> bool:
@@ -263,16 +270,21 @@ def steps_per_interval(integration: event_driven.Integration) -> int:
     return 1 << min(max(math.ceil(math.log2(max(wanted, 1e-9))), 0), _MOST_PARTS)
 
 
-def _table(motion: Motion, parts: int = 1) -> InputTable:
+def _table(motion: Motion, parts: int = 1, knots: int = 1) -> InputTable:
     duration = float(motion.time[-1] - motion.time[0])
-    knots = min(_knots_per_interval(motion), parts)
-    return tabulate([_signal(motion, knots)], [0.0], duration, duration / (motion.time.size - 1) / parts, every=parts)
+    return tabulate(
+        [_signal(motion, min(knots, parts))], [0.0], duration, duration / (motion.time.size - 1) / parts, every=parts
+    )
 
 
-def _knots_per_interval(motion: Motion) -> int:
-    """Number of knots per interval, so that cubics between them follow the fastest motion to 1e-5."""
+def _knots_per_interval(motion: Motion, rigid: bool = False) -> int:
+    """Number of knots per interval, so that cubics between them follow the fastest motion to 1e-5.
+
+    With them, accelerations are off by 8e-3; of a rigid device, with more knots, by 1e-4.
+    """
     interval = float(motion.time[-1] - motion.time[0]) / (motion.time.size - 1)
-    return 1 << min(max(math.ceil(math.log2(_KNOTS * motion.highest * interval)), 0), _MOST_KNOTS)
+    per_period, most = (_RIGID_KNOTS, _MOST_RIGID_KNOTS) if rigid else (_KNOTS, _MOST_KNOTS)
+    return 1 << min(max(math.ceil(math.log2(per_period * motion.highest * interval)), 0), most)
 
 
 def _signal(motion: Motion, knots: int) -> Signal:

@@ -221,7 +221,7 @@ def _repair_hypothesis(
             mask[max(i.start - (margin or _MARGIN), 0) : i.stop + after] = True
             places.append(float(e.record.time[i.start]))
         mended = mend(e.record)
-        whole[id(e.record)] = replace(experiment_of(mended), record=e.record, kept=e.kept, tally=e.tally)
+        whole[id(e.record)] = replace(experiment_of(mended, rigid=e.rigid), record=e.record, kept=e.kept, tally=e.tally)
         doubtful[id(e.record)] = mask
 
     def change_motion(e: Experiment, values: Values) -> Experiment:

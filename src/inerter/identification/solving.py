@@ -16,6 +16,7 @@ from inerter.identification.fit import NormalisedResidual
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.initial_estimate import chain_of, guess_of, sign_of
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, profiles, robust_cost, steps_of
+from inerter.identification.models import is_rigid
 from inerter.identification.noise import noise_whitening, uniform_whitening, whitening_of
 from inerter.identification.options import FitOptions
 from inerter.identification.parameter_space import space_of
@@ -74,7 +75,7 @@ def solve(
     whole, findings = [], []
     for number, record in enumerate(records):
         report("smoothing of records", number, len(records))
-        turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead))
+        turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead, is_rigid(rig.device)))
         whole.append(turned)
         findings += found_of_sign
     problem = FitProblem(

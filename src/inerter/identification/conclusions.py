@@ -109,9 +109,9 @@ def find_doubt(fit: Fit) -> Finding | None:
 
 
 def _main_cause(fit: Fit) -> Explanation | None:
-    """The best explanation, if it explains most of the misfit."""
+    """The best explanation, if it explains most of the misfit; without a misfit, any that is left."""
     best = fit.explanations[0] if fit.explanations else None
-    return best if best is not None and best.explained >= _MOST else None
+    return best if best is not None and (best.explained >= _MOST or fit.misfit.is_noise_limited) else None
 
 
 def _misfit_finding(fit: Fit, best: Explanation | None) -> Finding:

@@ -46,6 +46,9 @@ _BESIDE = 30  # samples to either side of dropped ones, where the interpolated m
 _LITTLE = 0.05  # of the detectable size of an unknown: starting value
 _AS_GOOD = 0.02  # of a misfit: difference within which two explanations count as equally good
 _STEP = 0.02  # of the detectable size of an unknown, for differences
+_SEEN, _SURE = 0.1, 30.0  # of a residual that noise may hide: share that is explained, and Fisher's ratio of it
+_LIKE = 0.5  # of the share of the best explanation of such a residual: another one
+_SHAFTS = (Suspect.ELASTIC, Suspect.RIGID, Suspect.BACKLASH)  # a stiff one also changes the errors of the simulation
 _AT_BOUND, _WIDER = 1e-3, 30.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
 
 
@@ -57,13 +60,16 @@ class Causes:
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
     point: Matrix | None = None  # the best fit
+    hidden: bool = False  # whether the noise of the force, as estimated, may hide a misfit
 
     def of(self, problem: FitProblem) -> list[Hypothesis]:
-        """Hypotheses of the problem; without a misfit only those that the records show."""
+        """Hypotheses of the problem; without a misfit those that the records show, or on the device if it is hidden."""
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-            if not self.before.is_noise_limited:
+            if self.hidden:
+                known = [h for h in laws(problem) if h.name not in _SHAFTS]
+            elif not self.before.is_noise_limited:
                 known += hypotheses(problem, self.places)
                 known += [] if self.point is None else beyond_bounds(problem, self.point)
             self.made = known
@@ -94,14 +100,19 @@ def explanations(
 ) -> list[Explanation]:
     """Every hypothesis with the share of a misfit that it explains, the most likely first.
 
-    Without a misfit only the hypotheses that the records show. `places` localises the misfit in each record. All
-    hypotheses are fitted roughly, by secants, and those that explain most are fitted to convergence. Of those that
-    explain about as much, that with fewer unknowns is the more likely.
+    Without a misfit only the hypotheses that the records show, and laws that explain much of the residual where the
+    noise of the force is only estimated. `places` localises the misfit in each record. All hypotheses are fitted
+    roughly, by secants, and those that explain most are fitted to convergence. Of those that explain about as much,
+    that with fewer unknowns is the more likely.
     """
     causes = Causes(before, places, point=optimum.point)
     every = causes.of(problem)
     known = replace(problem, whitenings=by.fitted, horizon=1.0)
-    slopes = known.jacobian(optimum.point, steps_of(optimum)) if every else np.zeros((0, 0))
+    estimated = any(e.record.force_noise is None for e in problem.experiments)
+    slopes = known.jacobian(optimum.point, steps_of(optimum)) if every or estimated else np.zeros((0, 0))
+    if not every and estimated:
+        causes = replace(causes, made=None, hidden=True)
+        every = causes.of(problem) if _has_structure(known, optimum, slopes, causes.of(problem)) else []
     rough = partial(_fit_roughly, causes, by, optimum, slopes)
     first = map_problems(
         rough, [(known, n) for n in range(len(every))], over_threads, counter("possible causes", len(every))
@@ -118,11 +129,45 @@ def explanations(
             restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED)
         )
         last[:_RESTARTED] = again
+    return _ranked([a.explanation for a in (*last, *first[_FITTED:])], causes.hidden)
+
+
+def _ranked(every: Sequence[Explanation], hidden: bool) -> list[Explanation]:
+    """One explanation of each name, the most likely first; of a misfit that noise hides, those that explain much."""
     found: dict[Suspect, Explanation] = {}
-    for e in (a.explanation for a in (*last, *first[_FITTED:])):
+    for e in every:
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
-    return sorted(found.values(), key=_likelihood)
+    ranked = sorted(found.values(), key=_likelihood)
+    if not hidden or not ranked:
+        return ranked
+    if ranked[0].name is Suspect.FILTERED_FORCE:  # in place of a delay: intervals contain its values already
+        return []
+    return [e for e in ranked if e.explained >= max(_SEEN, _LIKE * ranked[0].explained)]
+
+
+def _has_structure(problem: FitProblem, optimum: BestFit, slopes: Matrix, among: Sequence[Hypothesis]) -> bool:
+    """Whether a law explains, to first order, much of the residual of a fit, and surely more than chance does.
+
+    Both are shares of the residual, so that they do not depend on the noise that is expected.
+    """
+    base = np.linalg.qr(slopes)[0]
+
+    def project(values: Matrix) -> Matrix:
+        return np.asarray(values - base @ (base.T @ values))
+
+    residual = problem.residual(optimum.point)
+    left = project(residual)
+    square = float(left @ left)
+    for hypothesis in (h for h in among if h.name is not Suspect.FILTERED_FORCE):
+        other = _with_hypothesis(problem, hypothesis)
+        for point, _ in _starting_points(problem, optimum, other, hypothesis):
+            way = project(other.residual(point) - residual)
+            length = float(way @ way)
+            gain = float(left @ way) ** 2 / max(length, 1e-300)
+            if gain > _SEEN * square and gain * optimum.samples > _SURE * (square - gain):
+                return True
+    return False
 
 
 def _likelihood(e: Explanation) -> tuple[int, int, float]:
@@ -132,15 +177,19 @@ def _likelihood(e: Explanation) -> tuple[int, int, float]:
 
 def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list[Hypothesis]:
     """All hypotheses that are not assumed already and that these records could show."""
+    found = [*sensor_hypotheses(problem.offset), *recording_faults(problem, places), *laws(problem)]
+    taken = {h.name for h in problem.assumed}
+    return [h for h in found if h.name not in taken]
+
+
+def laws(problem: FitProblem) -> list[Hypothesis]:
+    """Hypotheses on the device, and that on a load cell of unstated bandwidth, which acts like some of them."""
     chain = chain_of(problem.rig.device)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     peak = max(float(np.abs(e.record.force[e.kept]).max()) for e in problem.experiments)
-    found = [*sensor_hypotheses(problem.offset), *recording_faults(problem, places)]
-    found += [load_cell()] if any(e.record.force_bandwidth is None for e in problem.experiments) else []
-    found += [] if chain is None else law_hypotheses(chain, fastest, stroke, peak)
-    taken = {h.name for h in problem.assumed}
-    return [h for h in found if h.name not in taken]
+    found = [load_cell()] if any(e.record.force_bandwidth is None for e in problem.experiments) else []
+    return found if chain is None else [*found, *law_hypotheses(chain, fastest, stroke, peak)]
 
 
 def beyond_bounds(problem: FitProblem, point: Matrix) -> list[Hypothesis]:
@@ -237,7 +286,7 @@ def _fit_roughly(
     if own:
         again = fit_by_secants(other, fit.point, other.jacobian(fit.point, steps), _MORE_ROUNDS, _ROUGH)
         fit = min(fit, again, key=lambda f: f.cost)
-    return Attempt(number, fit.point, steps, fit.cost, _explanation(other, fit, hypothesis, by, causes.before))
+    return Attempt(number, fit.point, steps, fit.cost, _explanation(other, fit, hypothesis, by, causes))
 
 
 def _fit_fully(causes: Causes, by: NoiseReference, problem: FitProblem, attempt: Attempt) -> Attempt:
@@ -246,7 +295,7 @@ def _fit_fully(causes: Causes, by: NoiseReference, problem: FitProblem, attempt:
     other = _with_hypothesis(problem, hypothesis)
     fit = best_fit_of(other, attempt.point, attempt.steps, _EVALUATIONS, _ACCURACY)
     return replace(
-        attempt, point=fit.point, cost=fit.cost, explanation=_explanation(other, fit, hypothesis, by, causes.before)
+        attempt, point=fit.point, cost=fit.cost, explanation=_explanation(other, fit, hypothesis, by, causes)
     )
 
 
@@ -306,17 +355,20 @@ def _difference_step(space: Space, i: int, size: float) -> float:
 
 
 def _explanation(
-    problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: NoiseReference, before: NormalisedResidual
+    problem: FitProblem, fit: BestFit, hypothesis: Hypothesis, by: NoiseReference, causes: Causes
 ) -> Explanation:
-    space, point = problem.space, fit.point
+    space, point, before = problem.space, fit.point, causes.before
     after = by.misfit(problem, point, hypothesis.slow)
     values = space.values_by_name(point)
     errors = fit.errors * space.slopes(point)
     own = {u.name for u in hypothesis.unknowns}
-    parts = zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True)
+    parts = list(zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True))
+    shares = [_explained_share(now, then) for now, then, limit in parts if then > limit]
+    if causes.hidden:
+        shares = [1.0 - (now / then) ** 2 for now, then, _ in parts if then > 0.0]
     return Explanation(
         name=hypothesis.name,
-        explained=min((_explained_share(now, then) for now, then, limit in parts if then > limit), default=1.0),
+        explained=min(shares, default=1.0),
         misfit=after,
         values={name: values[name] for name in own},
         estimates={n: (values[n], float(e)) for n, e in zip(space.names, errors, strict=True) if n not in own},

@@ -233,3 +233,27 @@ def test_what_a_held_road_cannot_drive():
     with pytest.raises(SimulationError, match="damper follows the velocity of 'road'"):
         it.evaluate(damped, index, it.ExpectedValue(realisations=2, conventions="paper2008"))
     assert it.evaluate(damped, index, it.ExpectedValue(realisations=2)).status.ok
+
+
+@pytest.mark.parametrize(("interval", "step"), [(0.01, 2e-4), (0.0033, 2e-4)], ids=["at steps", "between steps"])
+@pytest.mark.parametrize("late", [4e-13, -4e-13, 3e-12])
+def test_samples_that_are_late_by_rounding_jump_where_the_others_do(interval, step, late):
+    """Times that are sums of intervals differ from those of steps, or of samples of another road, by rounding."""
+    times, heights = interval * np.arange(31), 0.01 * np.random.default_rng(1).standard_normal(31)
+    strut = it.Spring(60e3) | it.Damper(3e3) - (it.Inerter(50.0) | it.Friction(20.0))
+    car, length = paper_half_car(strut, strut), step * round(25 * interval / step)
+
+    def moved(shift: float, cut: int = 0) -> it.Trajectory:
+        late_times = np.where(times > 0.0, times + shift, 0.0)
+        roads = {
+            "road_front": it.Signal.sampled(times, heights, "zero"),
+            "road_rear": it.Signal.sampled(late_times, heights, "zero"),
+        }
+        begin = it.simulate(car, road=roads, duration=cut * step, step=step) if cut else "rest"
+        return it.simulate(car, road=roads, duration=length - cut * step, step=step, initial=begin)
+
+    whole, shifted, rest = moved(0.0), moved(late), moved(late, cut=50)
+    for name in ("tyre_rear_load", "pitch_acceleration"):
+        close = 1e-7 * np.abs(whole[name]).max()
+        np.testing.assert_allclose(shifted[name], whole[name], rtol=0.0, atol=close)
+        np.testing.assert_allclose(rest[name], whole[name][50:], rtol=0.0, atol=close)

@@ -258,6 +258,7 @@ def tabulate(
         np.zeros(0) if s is None else _breaks(s, d, grid[0], grid[-1], step, joined)
         for s, d in zip(signals, delays, strict=True)
     ]
+    broken = _on_common_knots(broken, signals, delays)
     time, slot, odd = _knots(grid, _between(np.concatenate([np.zeros(0), *broken]), start, step), step, every)
     shape = (time.size, len(signals))
     value, slope = np.zeros(shape), np.zeros(shape)
@@ -300,6 +301,30 @@ def _replace_column(rows: Matrix, at: NDArray[np.intp], column: int, values: Mat
         rows = rows.copy()
         rows[at, column] = values
     return rows
+
+
+def _on_common_knots(
+    broken: Sequence[Matrix], signals: Sequence[Signal | None], delays: Sequence[float]
+) -> list[Matrix]:
+    """The breaks of each signal, at that of another one where they differ by what a signal takes for rounding."""
+    moved, known = list(broken), np.zeros(0)
+    for i in sorted(range(len(broken)), key=lambda i: _widest(signals[i]) or 0.0):
+        signal, times = signals[i], broken[i]
+        if signal is None or not times.size:
+            continue
+        for shift in (-1, 0) if known.size else ():
+            other = known[np.clip(np.searchsorted(known, times) + shift, 0, known.size - 1)]
+            times = _onto(other, times, signal, delays[i])
+        moved[i], known = times, np.union1d(known, times)
+    return moved
+
+
+def _onto(knots: Matrix, times: Matrix, signal: Signal, delay: float) -> Matrix:
+    """Breaks of a delayed signal, at the knots beside them where the signal counts them as reached there.
+
+    It would otherwise have its value after a break at a knot before that, as if it had changed over the step to there.
+    """
+    return np.where(np.abs(times - knots) <= time_tolerance(times - delay, _widest(signal)), knots, times)
 
 
 def _between(broken: Matrix, start: float, step: float) -> Matrix:
@@ -372,6 +397,7 @@ def _breaks(signal: Signal, delay: float, first: float, last: float, step: float
     """Times [s] at which a delayed signal breaks: after `first` (from `first` if `joined`), up to `last`, included."""
     begin = first - 0.5 * step if joined else first
     times = signal.breaks(begin - delay, last - delay + 0.5 * step) + delay
+    times = _onto(first + step * np.rint((times - first) / step), times, signal, delay)
     return times[(times >= first - _SAME * step) & (times <= last + _SAME * step)]
 
 
@@ -386,8 +412,10 @@ def _from_the_left(
     return at, left + aside * (1.5 * slope - 0.5 * further), 2.0 * slope - further
 
 
-def _widest(signal: Signal) -> float | None:
+def _widest(signal: Signal | None) -> float | None:
     """The largest interval of the tables in a signal: how far a knot reaches follows from it."""
+    if signal is None:
+        return None
     terms = [term for _, term in signal.terms] if isinstance(signal, SignalSum) else []
     return max((_widest(term) or 0.0 for term in terms), default=signal.interval or 0.0) or None
 

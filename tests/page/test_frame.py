@@ -100,6 +100,13 @@ def test_values_are_stale_after_a_reload_too_and_those_of_a_job(
     take.click()
     visitor.settled()
     assert stale.count() == 0  # a point of a front of J1 and J3 is one for J1
+    ranked = page.inner_text(".answers tbody")
+    page.locator(".job circle.point[aria-label^='S1']").last.press("Enter")
+    page.locator(".answers .pick[title=S1][aria-pressed=true]").wait_for()
+    visitor.settled()
+    assert page.inner_text(".answers tbody") != ranked
+    page.get_by_role("button", name="Undo").click()  # the layout and its values are one step
+    page.wait_for_function("told => document.querySelector('.answers tbody').innerText === told", arg=ranked)
     page.fill("[id='entry vehicle.sprung_mass']", "330 kg")
     page.keyboard.press("Enter")
     stale.wait_for()

@@ -10,6 +10,7 @@ import { strutWords } from "./state/scale.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
+/** @import { Gesture } from "./state/history.js" */
 
 const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
 const AGAIN = 1000; // [ms] until a server that does not answer is asked again
@@ -42,7 +43,7 @@ export async function optimise(store, api, asked) {
 
 /** The values of optima become the present values of their layouts, in one step; returns what to tell, doubts first.
  * Where they are known to be of the study that is open, `of` is that study.
- * @param {Store} store @param {any[]} designs @param {string | null} gesture
+ * @param {Store} store @param {any[]} designs @param {Gesture} gesture
  * @param {import("./state/document.js").Study | null} of */
 export function takeOptima(store, designs, gesture = null, of = null) {
   const { study } = store.get().history.present;
@@ -96,7 +97,7 @@ function atBounds({ active_bounds: bounds }) {
  * speaks: a fair beginning. Returns whether it is still open then.
  * @param {Store} store @param {Api} api @param {any} study */
 export async function openStudy(store, api, study) {
-  const gesture = `open ${Date.now()}`;
+  const gesture = Symbol("open");
   store.change({ type: "opened", study }, gesture);
   globalThis.scrollTo?.(0, 0);
   await beginAtBest(store, api, gesture, true);
@@ -105,7 +106,7 @@ export async function openStudy(store, api, study) {
 
 /** The values of what is free, while one waits; where that takes longer they stay in the middle of their bounds, of
  * which the page tells. A study that is changed meanwhile gets those of what it has become. @param {Store} store
- * @param {Api} api @param {string} gesture @param {boolean} [selects] whether nobody has chosen a layout yet */
+ * @param {Api} api @param {Gesture} gesture @param {boolean} [selects] whether nobody has chosen a layout yet */
 export async function beginAtBest(store, api, gesture, selects = false) {
   const { turn, history: { present: { study, layout } } } = store.get();
   const [index] = indicesIn(study);
@@ -132,7 +133,7 @@ export async function beginAtBest(store, api, gesture, selects = false) {
   if (isChanged && Object.keys(present.values).length === 0) await beginAtBest(store, api, gesture, selects);
 }
 
-/** Selects the layout of which the verdict speaks. @param {Store} store @param {Api} api @param {string} gesture */
+/** Selects the layout of which the verdict speaks. @param {Store} store @param {Api} api @param {Gesture} gesture */
 async function selectBest(store, api, gesture) {
   const { present } = store.get().history;
   const question = questions(store.get()).find(({ panel }) => panel === "decision");
@@ -221,13 +222,12 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }, st
   if (network === undefined) return "There is no device that could be taken.";
   if (store.get().history.present !== document) return "The study was changed meanwhile; take the device again.";
   const name = nextLayout(document);
-  const gesture = `device ${Date.now()}`;
+  const gesture = Symbol("device");
   store.change({ type: "layoutAdded", name }, gesture);
   if (strut) store.change({ type: "strutsParted", texts, strut }, gesture);
   const before = textOf(store.get().history.present);
   const text = before ? `${before} | ${network.text}` : network.text;
   store.change({ type: "drawn", text, added: device.elements }, gesture);
-  store.dispatch({ type: "rested" });
   return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut || "strut"])} of ${
     document.layout}. To join another strut: undo, select its layout, take the device again.`;
 }

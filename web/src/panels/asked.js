@@ -152,14 +152,10 @@ function define(store, index, key, value) {
   const { words, title } = kindOfIndex(state, index);
   const name = freshName(title.split(" ").at(-1), [...Object.keys(study.indices ?? {}),
     ...state.about.indices.flatMap((/** @type {any} */ { symbol, words }) => [symbol, words])]);
-  const gesture = `define ${Date.now()}`;
-  store.change({ type: "placed", place: ["indices", name], value: { kind: words, [key]: value } }, gesture);
-  for (const list of ["indices", "trade_off"]) {
-    const named = entryAt(study, ["study", list]);
-    if (named?.includes(index)) store.change({ type: "placed", place: ["study", list],
-      value: named.map((/** @type {string} */ each) => (each === index ? name : each)) }, gesture);
-  }
-  store.dispatch({ type: "rested" });
+  const lists = ["indices", "trade_off"].filter((list) => entryAt(study, ["study", list])?.includes(index));
+  store.change([{ type: "placed", place: ["indices", name], value: { kind: words, [key]: value } },
+    ...lists.map((list) => ({ type: /** @type {const} */ ("placed"), place: ["study", list],
+      value: study.study?.[list].map((/** @type {string} */ each) => (each === index ? name : each)) }))]);
   store.look({ index: name });
 }
 

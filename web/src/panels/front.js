@@ -8,7 +8,7 @@ import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
 import { placed, printed, scaled, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
-import { takeAndTell } from "../working.js";
+import { takeOptima } from "../working.js";
 import { indexAxis, indexChoices, indicesOf, signed } from "./answers.js";
 import { Files } from "./files.js";
 
@@ -74,9 +74,10 @@ export function FrontResult({ store, api, job }) {
   const fronts = result.fronts;
   /** @param {Entry} entry */
   const take = ({ front: { layout, problem_digests }, point: { texts, status, message } }) => {
-    takeAndTell(store, { layout, index: indices.map(({ index }) => index).join(" against "), texts, status, message,
-      problem_digests });
-    if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout });
+    const gesture = Symbol("point");
+    store.say(takeOptima(store, [{ layout, index: indices.map(({ index }) => index).join(" against "), texts, status,
+      message, problem_digests }], gesture), "taken");
+    if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout }, gesture);
   };
   const { present } = store.get().history;
   return html`<${FrontView} about=${store.get().about} indices=${indices} fronts=${fronts} take=${take}

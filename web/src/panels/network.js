@@ -15,7 +15,7 @@ import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 /** @import { Tree, Path, Joint } from "../network/algebra.js" */
-/** @import { ElementEntry } from "../state/document.js" */
+/** @import { Change, ElementEntry } from "../state/document.js" */
 /** @import { Placed, Box } from "../network/drawing.js" */
 
 const MARGIN = 14;
@@ -137,11 +137,12 @@ function present(store) {
 }
 
 /** Puts another tree in the place of the present one, and selects a part of it. @param {Store} store
- * @param {Tree} tree @param {Path} path @param {{[name: string]: ElementEntry}} [added] @param {string} [gesture] */
-function draw(store, tree, path, added, gesture) {
+ * @param {Tree} tree @param {Path} path @param {{[name: string]: ElementEntry}} [added]
+ * @param {Change[]} [also] */
+function draw(store, tree, path, added, also = []) {
   const text = written(tree);
   store.dispatch({ type: "planted", text, tree });
-  store.change({ type: "drawn", text, added }, gesture);
+  store.change([{ type: "drawn", text, added }, ...also]);
   store.look({ path });
 }
 
@@ -149,15 +150,12 @@ function draw(store, tree, path, added, gesture) {
  * be compared at its first value with others that are optimised. @param {Store} store @param {Tree} tree
  * @param {string} name @param {ElementKind} kind @param {ElementEntry} [entry] */
 function drawNew(store, tree, name, kind, entry = kind.example) {
-  const gesture = `new ${name}`;
   const state = store.get();
   const { elements = {} } = state.history.present.study;
   const [range] = Object.entries(elements).flatMap(([other, each]) =>
     (isRange(each) && kindOf(state, other)?.key === kind.key ? [each] : []));
-  draw(store, tree, placeOf(tree, name), { [name]: entry }, gesture);
-  if (range && !isRange(entry)) store.change({ type: "freed", place: ["elements", name], name, from: range.from,
-    to: range.to, method: quickMethod(state)?.name }, gesture);
-  store.dispatch({ type: "rested" });
+  draw(store, tree, placeOf(tree, name), { [name]: entry }, range && !isRange(entry) ? [{ type: "freed",
+    place: ["elements", name], name, from: range.from, to: range.to, method: quickMethod(state)?.name }] : []);
 }
 
 /** Where an element of this name stands; the last one if there are more. @param {Tree} tree @param {string} name
@@ -202,9 +200,8 @@ function offerElsewhere({ store, how }, beside, name) {
   if (others.length > 0) store.say(`${name} is at ${beside} of ${layout}, not of ${others.join(", ")}.`, "joined", {
     label: `Join it in all layouts with ${beside}`,
     act: () => {
-      for (const each of others) store.change({ type: "placed", place: ["layouts", each],
-        value: joined(own(study.layouts, each)) }, `join ${name}`);
-      store.dispatch({ type: "rested" });
+      store.change(others.map((each) => ({ type: "placed", place: ["layouts", each],
+        value: joined(own(study.layouts, each)) })));
     },
   });
 }

@@ -78,14 +78,13 @@ function addFreeNetwork(store, struts) {
   };
   const next = Object.fromEntries(Object.entries(texts).map(([each, text]) =>
     [each, struts.includes(each) ? freed(text) : text]));
-  const gesture = `free ${Date.now()}`;
-  store.change({ type: "layoutAdded", name: added }, gesture);
-  store.change({ type: "placed", place: ["elements", name], value: FREE }, gesture);
-  store.change({ type: "placed", place: ["layouts", added], value: next[""] ?? next }, gesture);
-  store.change({ type: "selected", layout: added, strut: struts.includes(strut ?? "") ? strut : struts[0] }, gesture);
-  if (study.study?.optimise === undefined)
-    store.change({ type: "placed", place: ["study", "optimise"], value: quickMethod(state)?.name }, gesture);
-  store.dispatch({ type: "rested" });
+  store.change([
+    { type: "layoutAdded", name: added },
+    { type: "placed", place: ["elements", name], value: FREE },
+    { type: "placed", place: ["layouts", added], value: next[""] ?? next },
+    { type: "selected", layout: added, strut: struts.includes(strut ?? "") ? strut : struts[0] },
+    { type: "placed", place: ["study", "optimise"], value: study.study?.optimise ?? quickMethod(state)?.name },
+  ]);
   toSearch(store);
 }
 

@@ -127,7 +127,7 @@ function takeSwept(store, of, row) {
   const number = numbersOf(store.get()).find(({ place }) => place === of.name);
   if (number === undefined || !(row.layout in (present.study.layouts ?? {})))
     return store.say(`The open study has no layout ${row.layout} with ${of.name}; nothing was changed.`, "taken");
-  const gesture = `sweep ${Date.now()}`;
+  const gesture = Symbol("sweep");
   const free = Object.keys(row.parameters ?? {}).length > 0;
   const told = free ? takeOptima(store, [row], gesture) : "";
   if (free && store.get().history.present === present) return store.say(told, "taken");
@@ -135,6 +135,5 @@ function takeSwept(store, of, row) {
   const text = `${Number((row[of.name] / factor).toPrecision(15))} ${unit}`.trim();
   store.change({ type: "placed", place: number.path, value: text }, gesture);
   store.change({ type: "selected", layout: row.layout }, gesture);
-  store.dispatch({ type: "rested" });
   return store.say(`${of.name} = ${text}. ${told}`.trim(), "taken");
 }

@@ -1,6 +1,7 @@
 // Undo and redo of a document that is never changed in place.
 
-/** @template T @typedef {{past: T[], present: T, future: T[], gesture: string | null}} History */
+/** What the changes of one step have in common, such as a drag. @typedef {string | symbol | null} Gesture */
+/** @template T @typedef {{past: T[], present: T, future: T[], gesture: Gesture}} History */
 
 const MOST = 500;
 
@@ -8,8 +9,8 @@ const MOST = 500;
 export const beginning = (present) => ({ past: [], present, future: [], gesture: null });
 
 /**
- * The history after a change; changes of one gesture, such as the drag of a slider, are one step.
- * @template T @param {History<T>} history @param {T} next @param {string | null} gesture @returns {History<T>}
+ * The history after a change; changes of one gesture are one step.
+ * @template T @param {History<T>} history @param {T} next @param {Gesture} gesture @returns {History<T>}
  */
 export function changed(history, next, gesture = null) {
   if (next === history.present) return history;

@@ -11,6 +11,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @import { Parts } from "../library.js" */
 /** @import { Answers } from "./answers.js" */
 /** @import { Typed } from "../entering.js" */
+/** @import { Gesture } from "./history.js" */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
 /** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does.
  * @typedef {{label: string, act: () => void}} Offer */
@@ -36,7 +37,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  * lit: string | null, records: any[], view: View,
  * about: any, connection: Connection, messages: Message[], typed: Typed[]}} State */
 
-/** @typedef {{type: "changed", change: Change, gesture: string | null}
+/** @typedef {{type: "changed", change: Change, gesture: Gesture}
  *  | {type: "began"} | {type: "rested"} | {type: "undone"} | {type: "redone"}
  *  | {type: "asked", panel: string, question: string}
  *  | {type: "answered", panel: string, question: string, value: any}
@@ -61,9 +62,10 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "typed", typed: Typed}
  *  | {type: "read", typed: Typed, sentence?: string}} Action */
 
-/** `change` changes the document, `look` what of it is shown; `say` gives a message.
+/** `change` changes the document: several changes, or those of one gesture, are one step; `look` changes what of it is
+ * shown; `say` gives a message.
  * @typedef {{get: () => State, dispatch: (action: Action) => void, subscribe: (told: () => void) => () => void,
- * change: (change: Change, gesture?: string | null) => void, look: (view: Partial<View>) => void,
+ * change: (changes: Change | Change[], gesture?: Gesture) => void, look: (view: Partial<View>) => void,
  * say: (text: string, about?: string, offer?: Offer) => void}} Store */
 
 /** @returns {State} */
@@ -167,8 +169,8 @@ export function createStore(state = initial()) {
   return {
     get: () => state,
     dispatch,
-    change: (change, gesture = null) => {
-      if (isChange(change)) dispatch({ type: "changed", change, gesture });
+    change: (changes, gesture = Array.isArray(changes) ? Symbol("step") : null) => {
+      for (const change of [changes].flat().filter(isChange)) dispatch({ type: "changed", change, gesture });
     },
     look: (view) => dispatch({ type: "viewed", view }),
     say: (text, about, offer) => dispatch({ type: "said", text, about, offer }),

@@ -33,6 +33,9 @@ def test_the_page_is_not_scrolled(visitor: Visitor, size: tuple[int, int]) -> No
         page.click(f"#tab-{tab}")
         visitor.drawn()
         assert page.evaluate(SCROLLED) == [0, 0, 0], tab
+    page.fill("#network-text", " | ".join(["k"] * 120))  # a long text scrolls in its panel
+    panel, text = (page.locator(each).bounding_box() for each in (".panel.network", ".panel.network .text"))
+    assert text["y"] + text["height"] <= panel["y"] + panel["height"]
 
 
 def test_the_verdict_is_that_of_the_server_with_all_its_caveats(visitor: Visitor) -> None:

@@ -22,6 +22,7 @@ import { html, useEffect, useMemo, useState } from "./parts/html.js";
 import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
 import { answerOf } from "./questions.js";
 import { open, studiesFirst } from "./remembering.js";
+import { isBlank } from "./state/document.js";
 
 /** @import { Store } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -43,7 +44,7 @@ export function Page({ store, api, enter }) {
   const [keys, setKeys] = useState(false);
   useEffect(() => listen(store, api, () => setKeys(true)), [store, api]);
   const state = store.get();
-  const blank = Object.keys(state.history.present.study).length === 0;
+  const blank = isBlank(state.history.present);
   /** @param {any} Panel */
   const shown = (Panel) => html`<${Panel} store=${store} api=${api} />`;
   const { decision, check, margins } = state.answers;
@@ -112,10 +113,10 @@ export function keepDrawing(store, draw) {
 
 /** @param {{store: Store}} props */
 function Title({ store }) {
-  const { study } = store.get().history.present;
-  if (Object.keys(study).length === 0) return "No study yet";
+  const { present } = store.get().history;
+  if (isBlank(present)) return "No study yet";
   return html`<${Field} class="title" aria-label="Title of the study" placeholder="Untitled study"
-    text=${study.title ?? ""}
+    text=${present.study.title ?? ""}
     done=${(/** @type {string} */ title) => store.change({ type: "placed", place: ["title"], value: title
       || undefined })} />`;
 }
@@ -152,7 +153,7 @@ function Standing({ store, api }) {
   const { is } = answerOf(state, "decision");
   const count = messages.length + problemsOf(state).length;
   const lost = connection === "lost" || connection === "refused";
-  const blank = Object.keys(state.history.present.study).length === 0;
+  const blank = isBlank(state.history.present);
   const ready = blank ? "ready" : STANDING[is];
   const told = lost ? "no server" : connection === "ready" ? ready : connection;
   return html`<span role="status">${since !== null

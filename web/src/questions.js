@@ -2,7 +2,7 @@
 
 import { isQuick, isSearched, judging, layoutsWith, numbersOf } from "./library.js";
 import { panelOf, shownOf, soughtIn } from "./state/answers.js";
-import { entryAt, indicesIn, isRange, mapValues, own } from "./state/document.js";
+import { entryAt, indicesIn, isBlank, isRange, mapValues, own } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
 
 /** @import { State, Action } from "./state/store.js" */
@@ -170,8 +170,7 @@ export function questions(state) {
   const known = ASKED.get(state);
   if (known) return known;
   const document = state.history.present;
-  const blank = Object.keys(document.study).length === 0;
-  const found = blank ? [] : ROWS.flatMap((row) => row(state, document)).map(keyed);
+  const found = isBlank(document) ? [] : ROWS.flatMap((row) => row(state, document)).map(keyed);
   ASKED.set(state, found);
   return found;
 }

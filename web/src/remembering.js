@@ -2,7 +2,7 @@
 
 import { showNewest } from "./parts/controls.js";
 import { baselineOf } from "./questions.js";
-import { empty } from "./state/document.js";
+import { empty, isBlank } from "./state/document.js";
 import { initial } from "./state/store.js";
 import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
 
@@ -91,7 +91,7 @@ export function keepRemembering(store) {
   addEventListener("pagehide", () => {
     const { present } = store.get().history;
     sessionStorage.setItem(KEPT, JSON.stringify(present));
-    if (Object.keys(present.study).length > 0) noteOpened(present.study);
+    if (!isBlank(present)) noteOpened(present.study);
   });
 }
 
@@ -194,7 +194,7 @@ async function openRecord(store, api, file) {
   store.say(`Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
-  const blank = Object.keys(store.get().history.present.study).length === 0;
+  const blank = isBlank(store.get().history.present);
   if (blank && (await beginWith(store, api, (await api.get(`examples/${FOR_RECORDS}`)).study)))
     store.change({ type: "selected", layout: baselineOf(store.get().history.present).layout }); // the device joins it
   showNewest(".tabs");

@@ -23,8 +23,10 @@ export function watchFile(store, api, stamp) {
   if (watching) return;
   watching = true;
   let known = stamp;
+  let looking = false; // one look at a time: of two, the older one might be answered last
   const look = async () => {
-    if (document.hidden || store.get().connection !== "ready") return;
+    if (looking || document.hidden || store.get().connection !== "ready") return;
+    looking = true;
     try {
       const { name, stamp: now } = await api.get("start/stamp");
       if (now === known || name === "") return;
@@ -32,6 +34,8 @@ export function watchFile(store, api, stamp) {
       tell(store, api, await api.get("start"));
     } catch {
       // A server that is lost, or begun again without the file, is told of elsewhere.
+    } finally {
+      looking = false;
     }
   };
   setInterval(look, LOOK);

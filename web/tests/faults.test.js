@@ -6,6 +6,7 @@ import { freeIn, layoutsWith, numbersOf, unchosenIn } from "../src/library.js";
 import { choicesOf, designOf, questions } from "../src/questions.js";
 import { after, empty, entryAt, textOf } from "../src/state/document.js";
 import { createStore, initial } from "../src/state/store.js";
+import { watchFile } from "../src/watching.js";
 import { findWork, resume, stop } from "../src/working.js";
 import { partsOf } from "./reading.js";
 
@@ -186,4 +187,29 @@ test("a look at the work brings back nothing that was forgotten meanwhile, and d
     return { work: [job("forgotten"), job("done", "done"), job("other")] };
   } }));
   assert.deepEqual(Object.keys(store.get().work), ["begun", "other"]);
+});
+
+test("the file of the command line is looked at once at a time, so that no late look tells what was before", async () => {
+  const { addEventListener: listen, setInterval: repeat } = globalThis;
+  /** @type {() => void} */
+  let look = () => assert.fail("nothing listens");
+  /** @type {{path: string, tell: (answer: any) => void}[]} */
+  const asked = [];
+  const get = (/** @type {string} */ path) => new Promise((tell) => asked.push({ path, tell }));
+  const store = createStore({ ...initial(), connection: "ready" });
+  Object.assign(globalThis, { document: { hidden: false }, setInterval: () => 0,
+    addEventListener: (/** @type {string} */ _, /** @type {() => void} */ act) => (look = act) });
+  try {
+    watchFile(store, /** @type {any} */ ({ get }), "before");
+    look();
+    look();
+    assert.deepEqual(asked.map(({ path }) => path), ["start/stamp"]);
+    asked[0].tell({ name: "car.toml", stamp: "before" });
+    await new Promise((done) => setTimeout(done));
+    look();
+    assert.equal(asked.length, 2);
+  } finally {
+    Object.assign(globalThis, { addEventListener: listen, setInterval: repeat });
+    delete (/** @type {any} */ (globalThis).document);
+  }
 });

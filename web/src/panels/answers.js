@@ -152,10 +152,11 @@ export function signed(value, places) {
   return `${value < 0 ? "−" : "+"}${size.toFixed(digits)} %`;
 }
 
-/** The indices that the study asks for. @param {State} state @returns {{symbol: string, title: string}[]} */
-export function indicesOf(state) {
+/** The indices that the study asks for, or those of other symbols. @param {State} state @param {string[]} [symbols]
+ * @returns {{symbol: string, title: string}[]} */
+export function indicesOf(state, symbols = indicesIn(state.history.present.study)) {
   const known = state.about?.indices ?? [];
-  return indicesIn(state.history.present.study).map((symbol) =>
+  return symbols.map((symbol) =>
     known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
 }
 

@@ -4,6 +4,7 @@ import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
 import { Select } from "../parts/controls.js";
 import { allDesigns, answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
 import { isSearched, methodChoice, searchedLayouts, unchosenIn } from "../library.js";
+import { isBlank } from "../state/document.js";
 import { capital, quantity, takenApart } from "../state/scale.js";
 import { isBeingChosen } from "../asking.js";
 import { AskedPanel, IndexSettings, chosenFor } from "./asked.js";
@@ -17,7 +18,7 @@ import { problemsOf } from "./values.js";
 /** @param {{store: Store}} props */
 export function DecisionLine({ store }) {
   const state = store.get();
-  const blank = Object.keys(state.history.present.study).length === 0;
+  const blank = isBlank(state.history.present);
   const present = blank ? 1 : state.view.tab === "margins" ? 4 : 3;
   /** @param {number} number @param {string} title @param {string} answer */
   const step = (number, title, answer) => html`<div class="step"
@@ -97,7 +98,7 @@ function Verdict({ state, blank }) {
   const verdict = value?.verdict;
   const searched = searchedLayouts(state);
   const none = searched.length > 0 ? `No strut to rank: the network of ${searched.join(", ")} is to be searched for.`
-    : "Not computed: the study has no index.";
+    : `Not computed: the study has no ${state.history.present.layout === "" ? "layout" : "index"}.`;
   const unsearched = searched.length > 0 && value?.rows.length < 2; // nothing is wrong with what stands alone
   const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : unsearched ? none : "";
   const isStale = !failed && verdict?.severity === "answer" && staleLayouts(state).length > 0;

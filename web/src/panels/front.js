@@ -35,9 +35,7 @@ const ALL = "all fronts";
 export function frontIndices(state) {
   const known = state.about?.indices ?? [];
   const { trade_off: wanted = [] } = state.history.present.study.study ?? {};
-  const named = wanted.map((/** @type {string} */ symbol) =>
-    known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
-  const all = [...named, ...indicesOf(state).filter(({ symbol }) => !wanted.includes(symbol))];
+  const all = [...indicesOf(state, wanted), ...indicesOf(state).filter(({ symbol }) => !wanted.includes(symbol))];
   return all.length > 1 ? all : known;
 }
 

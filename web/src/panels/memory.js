@@ -8,6 +8,7 @@ import { DropDown, Select, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { download, fileName, linkTo, open } from "../remembering.js";
 import { begin, ended, openStudy } from "../working.js";
+import { isBlank } from "../state/document.js";
 
 /** @import { Store } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -19,7 +20,7 @@ export function Menu({ store, api }) {
   const { history } = state;
   const { study, layout } = history.present;
   const name = fileName(study.title);
-  const blank = Object.keys(study).length === 0;
+  const blank = isBlank(history.present);
   /** @param {(document: Document) => Promise<void>} work */
   const attempt = (work) => () => whenChosen(store).then((document) => document && work(document))
     .catch((/** @type {Error} */ { message }) => store.say(message));

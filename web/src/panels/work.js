@@ -134,12 +134,10 @@ function OptimumResult({ store, job: { result } }) {
 const Take = ({ store, design, children }) =>
   html`<button type="button" onClick=${() => takeAndTell(store, design)}>${children}</button>`;
 
-/** The rows of a result of runs: designs with their index and values. @param {any} result @returns {any[]} */
-const rowsOf = (result) => result.rows ?? result.designs ?? (Array.isArray(result) ? result : []);
-
 /** @param {{store: Store, api: Api, job: Job}} props */
 function RunResult({ store, api, job }) {
-  const rows = rowsOf(job.result);
+  /** @type {any[]} */
+  const rows = job.result.designs;
   const { about } = store.get();
   /** @param {any} row */
   const unitOf = ({ index, unit = "" }) =>
@@ -151,7 +149,7 @@ function RunResult({ store, api, job }) {
       <td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td>
       <td class="number">${!isOk(row.status) && html`<div class="doubt">${String(row.status).split(": ")[0]}</div>`}
         ${writtenIn(row, unitOf(row))}</td>
-      <td class="number">${percent(row.improvement_percent ?? row.improvement)}</td>
+      <td class="number">${percent(row.improvement_percent)}</td>
       <td>${Object.keys(row.parameters ?? {}).length > 0 && html`<${Take} store=${store} design=${row}>Take<//>`}</td>
     </tr>`)}
   <//>

@@ -170,6 +170,9 @@ export function textOf({ study, layout, strut }) {
   return typeof text === "string" ? text : "";
 }
 
+/** Whether no study is open. @param {{study: Study}} document */
+export const isBlank = ({ study }) => Object.keys(study).length === 0;
+
 /** The indices of a study: where it names none, those of its trade-off. @param {Study} study @returns {string[]} */
 export const indicesIn = ({ study = {} }) => study.indices ?? study.trade_off ?? [];
 

@@ -264,8 +264,8 @@ def _sum_over_law(graph: Graph, law: LinearRole, left: Matrix, right: Matrix) ->
 def _condensed_damping(damping: Matrix, na: int) -> Matrix:
     """Damping between inertias and roads, with the massless motions between them eliminated."""
     nv = damping.shape[0]
-    if na == nv:
-        return damping[:, nv:]
+    if na == nv or not damping[na:, nv:].any():  # no massless motion is damped against a road
+        return damping[:na, nv:]
     return damping[:na, nv:] - damping[:na, na:nv] @ np.linalg.pinv(damping[na:, na:nv]) @ damping[na:, nv:]
 
 

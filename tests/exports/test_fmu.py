@@ -27,6 +27,7 @@ from fmpy.validation import validate_fmu
 from fmu_functions import declared
 from fmu_master import Master
 from fmu_roads import driven, error, needs_compiler, road
+from uneven import OneSidedStop, valved_damper
 
 pytestmark = needs_compiler
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
@@ -104,12 +105,15 @@ def test_every_kind_of_vehicle(number: int, masters: list[Master], tmp_path: Pat
 
 
 SHAFT = it.Spring(1e6) | it.Damper(3200.0)
+BUMPER = it.Spring(2e5) | it.Damper(500.0)
 ROUGH = {  # struts, with the largest error of an output against the event-driven simulation
     "friction beside the inerter": (K | C - (B | it.Friction(100.0)), 1e-6),
     "on an elastic shaft": (K | C - SHAFT - (B | it.Friction(100.0)), 1e-6),
     "friction of the whole strut": (K | C | it.Friction(100.0), 5e-6),
     "backlash and friction": (K | C - it.Gap(5e-4) - SHAFT - (B | it.Friction(20.0)), 3e-5),
-    "a stop": (it.Spring(3e4) | it.Damper(1.5e3) | (it.Spring(2e5) | it.Damper(500.0)) - it.Gap(5e-3), 5e-6),
+    "a stop": (it.Spring(3e4) | it.Damper(1.5e3) | BUMPER - it.Gap(5e-3), 5e-6),
+    "a stop on one side": (it.Spring(3e4) | it.Damper(1.5e3) | BUMPER - OneSidedStop(5e-3), 5e-6),
+    "a valve": (K | valved_damper(1500.0, 5000.0) - SHAFT - B, 5e-6),
 }
 
 
@@ -157,27 +161,36 @@ def test_what_sticks_between_springs_stays_where_it_is(step: float, masters: lis
 
 
 def rough(number: int) -> it.Mechanism:
-    """A random design with friction beside most of its dampers and inerters, and with backlash and a shaft at some."""
+    """A random design with friction beside most of its dampers and inerters, and backlash and a shaft at some.
+
+    Some dampers have a valve instead, and every third design a stop on one side.
+    """
     rng = np.random.default_rng([691, number])
 
     def change(element: it.Element) -> it.Network:
         if not isinstance(element, it.Damper | it.Inerter) or rng.random() > 0.6:
             return element
+        if isinstance(element, it.Damper) and rng.random() < 0.3:
+            return valved_damper(element.coefficient, element.coefficient * float(rng.uniform(1.5, 4.0)))
         made = element | it.Friction(float(10.0 ** rng.uniform(0.5, 2.2)))
         if number % 2 and rng.random() < 0.5:
             shaft = it.Spring(float(10.0 ** rng.uniform(5, 6))) | it.Damper(float(10.0 ** rng.uniform(3, 4)))
             made = made - it.Gap(float(10.0 ** rng.uniform(-4, -2.5))) - shaft
         return made
 
+    def rough_strut(strut: it.Strut) -> it.Strut:
+        network = map_elements(strut.network, change)
+        stop = BUMPER - OneSidedStop(float(10.0 ** rng.uniform(-3.5, -2.5)))
+        return replace(strut, network=network if number % 3 else network | stop)
+
     mechanism = design(number).mechanism()
-    return replace(
-        mechanism, struts=tuple(replace(s, network=map_elements(s.network, change)) for s in mechanism.struts)
-    )
+    return replace(mechanism, struts=tuple(rough_strut(strut) for strut in mechanism.struts))
 
 
-@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], often=(2, 9), kept=0))
+@pytest.mark.parametrize("number", sampled([n for n in range(50) if n % 5 != 3], often=(2, 9, 39), kept=0))
 def test_random_designs_with_friction_and_gaps(number: int, masters: list[Master], tmp_path: Path) -> None:
-    vehicle, step = rough(number), 1e-3
+    """Number 39 has a mass of 4 g between dampers, at which the forces rang: wrong by 80 % at every step."""
+    vehicle, step = rough(number), 2e-4
     signal, height, slope = road(0.5, step, number)
     shown = tuple(f"{m.name}_{'force' if isinstance(m, it.Strut) else 'load'}" for m in vehicle.mounts())
     try:

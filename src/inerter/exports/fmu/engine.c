@@ -7,7 +7,8 @@
    NR reactions of friction and gaps are such that their laws hold at the end of a step. From their values at its begin they
    change as ramps, so that what sticks beside a light damper does not creep. A step in which one of them changes its
    state is halved, down to 2^(1 - LEVELS) of the whole, where reactions are held; the flows of its parts are powers of
-   each other. Reactions at an instant are those of a step of GLANCE from there. A friction that CREEPS is at a node that
+   each other. So is one that is long for a light mass, at which ramps would ring: an error changes its sign with every step
+   and never decays. Reactions at an instant are those of a step of GLANCE from there. A friction that CREEPS is at a node that
    only springs hold: its force moves the node at once, and its law is about its elongation, which slip alone changes. */
 
 #include <math.h>
@@ -32,6 +33,7 @@
 #else
 #define LEVELS 1
 #endif
+#define RINGING 1e-4 /* of the largest share of reactions in an output */
 #define TERMS 20
 #define WORST 1e-9 /* error of a row of the matrices by rounding, of its largest entry */
 #define KEPT 6 /* flows of so many lengths of steps */
@@ -50,6 +52,7 @@ typedef struct {
     double r[NR + 1]; /* in tension */
     double place[NR + 1]; /* elongation of a friction that creeps, which only its slip changes */
     double p[NP + 1];
+    double largest[NY + 1]; /* share of the reactions in each output so far */
     double mean; /* of the force of a strut over the last step */
     int stale; /* whether u and r are not yet those of this instant */
     int given; /* whether an input was ever set that is not a motion */
@@ -441,19 +444,47 @@ static double sensitivity(const Model *model, int number, const double *dx, cons
     return y;
 }
 
+/* What reactions add to an output at once. */
+static double share(const Model *model, int number, const double *r)
+{
+    double y = 0.0;
+    int j;
+    for (j = 0; j < NR; j++) y += model->D[number][NU + j] * r[j];
+    return y;
+}
+
+/* Whether reactions at the end of a step are not those of that instant in some output, as when they ring. */
+static int rings(Model *model)
+{
+    double at_end[NR + 1];
+    int i, found = 0;
+    if (NR == 0) return 0;
+    memcpy(at_end, model->now.r, sizeof at_end);
+    look(model);
+    for (i = 0; i < NY; i++) {
+        const double now = share(model, i, model->now.r);
+        model->now.largest[i] = fmax(model->now.largest[i], fabs(now));
+        found |= fabs(share(model, i, at_end) - now) > RINGING * model->now.largest[i];
+    }
+    memcpy(model->now.r, at_end, sizeof at_end);
+    return found;
+}
+
 static void advance_part(Model *model, const Flows *flows, double step, int level)
 {
     const State before = model->now;
-    int i, changed = 0;
+    int i, refined = 0;
     follow(model, &flows->flows[level], step, level == LEVELS - 1, &model->now);
-    for (i = 0; i < NR; i++) changed |= contact(model, before.r, i) != contact(model, model->now.r, i);
-    if (changed && level < LEVELS - 1) {
+    if (level == LEVELS - 1) {
+        look(model);
+        return;
+    }
+    for (i = 0; i < NR; i++) refined |= contact(model, before.r, i) != contact(model, model->now.r, i);
+    if (refined || rings(model)) {
         model->now = before;
         advance_part(model, flows, step / 2.0, level + 1);
         advance_part(model, flows, step / 2.0, level + 1);
-        return;
     }
-    look(model);
 }
 
 /* The flows of a step; NULL as `discretise`. */
@@ -540,6 +571,7 @@ static int advance(Model *model, double step)
     }
     for (i = 0; i < NE; i++)
         for (k = 0; k < ORDERS; k++) model->now.e[k][i] = cubic(model->now.e, i, k, step);
+    look(model);
     model->now.time = end;
     for (i = 0; i < NX; i++)
         if (!isfinite(model->now.x[i])) return 0;

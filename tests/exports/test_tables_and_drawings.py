@@ -124,6 +124,25 @@ def test_a_trajectory_is_written_to_the_last_bit() -> None:
         it.export(run, "control")
 
 
+def test_a_record_is_written_to_the_last_bit(tmp_path: Path) -> None:
+    time = 0.01 * np.arange(50)
+    record = it.Record(time, 1e-3 * np.sin(time), np.cos(time) / 3.0, source="bench", notes=("Trimmed.",))
+    found = table(it.export(record, "csv"))
+    assert list(found.columns) == ["time [s]", "displacement [m]", "force [N]"]
+    assert np.array_equal(found["force [N]"], record.force)
+    data = xr.open_dataset(io.BytesIO(it.export(record, "netcdf")), engine="h5netcdf")
+    assert np.array_equal(data["force"].values, record.force)
+    assert np.array_equal(data["time"].values, time)
+    assert (data["force"].units, data.title, data.notes) == ("N", "bench", "Trimmed.")
+    for kind, suffix in (("csv", ".csv"), ("matlab", ".mat")):
+        again = it.read_record(it.export(record, kind, tmp_path / f"bench{suffix}"))
+        assert np.array_equal(again.force, record.force)
+    with pytest.raises(it.InerterError, match="a script holds a linear model"):
+        it.export(record, "matlab", tmp_path / "bench.m")
+    with pytest.raises(it.InerterError, match="requires a vehicle or a LinearSystem, got Record"):
+        it.export(record, "control")
+
+
 def test_a_pole_at_a_frequency_is_refused() -> None:
     car = it.Absorber(1000.0, 4e4, 50.0, it.Spring(1e4))
     system = it.state_space(car)

@@ -68,3 +68,19 @@ def test_a_network_is_a_drawing() -> None:
     root = ElementTree.fromstring(FREE._repr_svg_())
     assert root.tag.endswith("svg")
     assert FREE._repr_svg_() == FREE._repr_svg_()
+
+
+@pytest.mark.parametrize(
+    ("design", "drawn"),
+    [
+        (PLAIN, {"120 kN/m", "4.981 kN s/m"}),
+        (it.Seat(PLAIN, 80.0, it.Spring(2e4)), {"strut", "seat", "20 kN/m"}),
+        (it.HalfCar(400.0, 200.0, 25.0, 20.0, 1.2e5, 1e5, 0.8, 1.2, it.Spring(2e4), it.Spring(3e4)), {"front", "rear"}),
+        (PLAIN.mechanism(), {"120 kN/m"}),
+    ],
+)
+def test_a_design_is_a_drawing_of_its_struts(design: it.Vehicle, drawn: set[str]) -> None:
+    svg = design._repr_svg_()  # type: ignore[attr-defined]
+    assert ElementTree.fromstring(svg).tag.endswith("svg")
+    written = {text.replace("\N{NO-BREAK SPACE}", " ") for text in re.findall(r"<!-- (.*?) -->", svg)}
+    assert drawn <= written | set(" ".join(written).split()), written

@@ -8,37 +8,31 @@ from typing import TYPE_CHECKING
 
 from inerter.exports.kind import ExportKind
 from inerter.exports.request import ExportSpec
-from inerter.networks.elements import Element, Free, Network, Tied
+from inerter.networks.elements import Element, Free, Tied
 
 if TYPE_CHECKING:
     from inerter.figures.networks import Schematic
 
 
-def _networks_by_title(request: ExportSpec) -> dict[str, Network]:
-    """Networks by their titles; mounts with the same network share one, and one alone has none."""
-    together: dict[Network, list[str]] = {}
-    for name, network in request.networks.items():
-        together.setdefault(network, []).append(name.replace("_", " "))
-    return {"" if len(together) == 1 else ", ".join(names): network for network, names in together.items()}
-
-
 def _figure(request: ExportSpec, suffix: str) -> bytes:
     from inerter.figures.networks import network_figure  # noqa: PLC0415 - heavy
+    from inerter.figures.plots.network import networks_by_title  # noqa: PLC0415 - heavy
     from inerter.figures.style import UNDATED, style_context  # noqa: PLC0415 - heavy
 
     content = io.BytesIO()
     with style_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "constrained_layout not applied")
-        figure = network_figure(_networks_by_title(request), values=True)
+        figure = network_figure(networks_by_title(request.networks), values=True)
         figure.savefig(content, format=suffix.removeprefix("."), metadata=UNDATED[suffix])
     return content.getvalue()
 
 
 def _tikz(request: ExportSpec, suffix: str) -> str:
     from inerter.figures.networks import schematic  # noqa: PLC0415 - heavy
+    from inerter.figures.plots.network import networks_by_title  # noqa: PLC0415 - heavy
 
     lines = ["% written by inerter; needs \\usepackage{tikz}, one unit is one point"]
-    for title, network in _networks_by_title(request).items():
+    for title, network in networks_by_title(request.networks).items():
         lines += [f"% {title}"] if title else []
         lines += tikz_lines(schematic(network, values=True))
     return "\n".join([*lines, ""])

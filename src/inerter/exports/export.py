@@ -21,9 +21,9 @@ def export(
     """A design in the format of another program; `inerter.EXPORTS` lists the kinds.
 
     `of` is a vehicle without free values, or what the kind takes besides: a network (drawings, `spice`, FMUs), a
-    `LinearSystem` (linear models), a `Trajectory` (tables). `options` are those of an `ExportSpec`, by name. Returns
-    the object of Python for `control` and `scipy`; the path for a file that was written to `path`, or without `path`
-    what it would hold, text or bytes.
+    `LinearSystem` (linear models), a `Trajectory` (tables), a `Record` (tables, `matlab`). `options` are those of an
+    `ExportSpec`, by name. Returns the object of Python for `control` and `scipy`; the path for a file that was written
+    to `path`, or without `path` what it would hold, text or bytes.
 
     A file is written whole or not at all, and an existing one replaced with `overwrite` only.
 

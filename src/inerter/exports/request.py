@@ -16,18 +16,19 @@ from inerter.exports.refusals import refuse_moving_ground, refuse_nonlinear, ref
 from inerter.indices.definition import Index
 from inerter.networks.elements import Network
 from inerter.networks.transform import linearise
+from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.linear import LinearSystem
 from inerter.validation import is_number
 from inerter.vehicle.mechanism import Mechanism, Strut
 from inerter.vehicle.vehicle import Vehicle, check_fixed
 
-Exportable = Vehicle | Network | LinearSystem | Trajectory
+Exportable = Vehicle | Network | LinearSystem | Trajectory | Record
 
 
 @dataclass(frozen=True, eq=False)
 class ExportSpec:
-    """A vehicle without free values, a network, a linear system or a trajectory, and what of it is wanted.
+    """A vehicle without free values, a network, a linear system, a trajectory or a record, and what of it is wanted.
 
     `inputs` and `outputs` choose among those of the linear model, `form` is "state-space" or "descriptor", and `linear`
     leaves out friction and gaps; `frequencies` [Hz], and `indices` by name with their `conventions`, are for tables.

@@ -1,4 +1,4 @@
-"""Tables of what a figure shows: frequency responses of a design, or a trajectory, as CSV or netCDF."""
+"""Tables of what a figure shows, as CSV or netCDF: frequency responses of a design, a trajectory, or a record."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ from inerter.exports.request import ExportSpec
 from inerter.indices.definition import Index
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.norms.response import frequency_response, resonant_range
+from inerter.records.record import CHANNELS, Record
+from inerter.records.writers import write_record_table
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.descriptor import close
 from inerter.systems.linear import check_names
@@ -84,6 +86,9 @@ def _index_gains(request: ExportSpec, name: str, index: Index, omega: Matrix) ->
 
 def _make_csv(request: ExportSpec, suffix: str) -> str:
     content = io.StringIO()
+    if isinstance(request.of, Record):
+        write_record_table(request.of, content, ",")
+        return content.getvalue()
     writer = csv.writer(content, lineterminator="\n")
     if isinstance(request.of, Trajectory):
         names = _outputs_of(request)
@@ -117,7 +122,20 @@ def _columns(found: ExportedResponses) -> Iterator[tuple[str, Matrix]]:
 def _make_netcdf(request: ExportSpec, suffix: str) -> bytes:
     if isinstance(request.of, Trajectory):
         return netcdf_content(request.of.to_xarray(_outputs_of(request)))
+    if isinstance(request.of, Record):
+        return netcdf_content(_record_dataset(request.of))
     return netcdf_content(responses_dataset(responses_of(request)))
+
+
+def _record_dataset(record: Record) -> xarray.Dataset:
+    import xarray  # noqa: PLC0415 - heavy
+
+    channels = record.channels() | {name: values for name, values in record.further.items() if name not in CHANNELS}
+    data = {
+        name: ("time", values, {"long_name": name} | ({"units": CHANNELS[name]} if name in CHANNELS else {}))
+        for name, values in channels.items()
+    }
+    return xarray.Dataset(data, attrs={"title": record.source, "notes": "\n".join(record.notes)})
 
 
 def responses_dataset(found: ExportedResponses) -> xarray.Dataset:
@@ -159,5 +177,7 @@ def _in_brackets(unit: str) -> str:
     return f"({unit})" if "/" in unit or " " in unit else unit or "1"
 
 
-CSV = ExportKind("csv", "table of the frequency responses, or of a trajectory", (".csv",), _make_csv)
-NETCDF = ExportKind("netcdf", "dataset of the frequency responses, or of a trajectory", (".nc",), _make_netcdf)
+CSV = ExportKind("csv", "table of the frequency responses, of a trajectory or of a record", (".csv",), _make_csv)
+NETCDF = ExportKind(
+    "netcdf", "dataset of the frequency responses, of a trajectory or of a record", (".nc",), _make_netcdf
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from pathlib import Path
+from typing import BinaryIO, TextIO
 
 import numpy as np
 import scipy
@@ -52,20 +53,22 @@ def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: boo
 
 
 def _write_csv(record: Record, name: str) -> None:
-    _write_table(record, name, ",")
+    with open(name, "w", encoding="utf-8", newline="") as file:
+        write_record_table(record, file, ",")
 
 
 def _write_tsv(record: Record, name: str) -> None:
-    _write_table(record, name, "\t")
+    with open(name, "w", encoding="utf-8", newline="") as file:
+        write_record_table(record, file, "\t")
 
 
-def _write_table(record: Record, name: str, delimiter: str) -> None:
+def write_record_table(record: Record, file: TextIO, delimiter: str) -> None:
+    """Write the channels with a heading `name [unit]`, below source and notes."""
     import pandas as pd  # noqa: PLC0415 - heavy
 
     headed = {f"{role} [{CHANNELS[role]}]": values for role, values in record.channels().items()}
-    with open(name, "w", encoding="utf-8", newline="") as file:
-        file.writelines(f"# {' '.join(line.split())}\n" for line in (record.source, *record.notes))
-        pd.DataFrame(headed, copy=False).to_csv(file, sep=delimiter, index=False, lineterminator="\n")
+    file.writelines(f"# {' '.join(line.split())}\n" for line in (record.source, *record.notes))
+    pd.DataFrame(headed, copy=False).to_csv(file, sep=delimiter, index=False, lineterminator="\n")
 
 
 def _write_tdms(record: Record, name: str) -> None:
@@ -91,11 +94,13 @@ def _write_mdf(record: Record, name: str) -> None:
         file.save(name, overwrite=True, compression=1)
 
 
-def _write_mat(record: Record, name: str) -> None:
+def write_record_matlab(record: Record, file: str | BinaryIO) -> None:
+    """Write the channels, their units, source and notes as variables of a MAT-file of version 5."""
     channels = record.channels()
     units = {role: CHANNELS[role] for role in channels}
     text = {"source": record.source or _NOT_GIVEN, "notes": "\n".join(record.notes) or "none"}
-    scipy.io.savemat(name, {**channels, "units": units, **text}, do_compression=True, oned_as="column")
+    variables = {**channels, "units": units, **text}
+    scipy.io.savemat(file, variables, do_compression=True, oned_as="column")  # type: ignore[arg-type]
 
 
 WRITERS: dict[str, Callable[[Record, str], None]] = {
@@ -104,5 +109,5 @@ WRITERS: dict[str, Callable[[Record, str], None]] = {
     ".txt": _write_tsv,
     ".tdms": _write_tdms,
     ".mf4": _write_mdf,
-    ".mat": _write_mat,
+    ".mat": write_record_matlab,
 }

@@ -15,6 +15,7 @@ from inerter.errors import DesignError, MechanismError
 from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
+from inerter.notebook import shown_by
 from inerter.validation import check_positive, is_number
 
 SMALLEST, LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
@@ -203,6 +204,8 @@ class Mechanism:
     mirror: tuple[tuple[str, str], ...] = ()  # mirrored pairs of coordinates, or antisymmetric ones: see `half_of`
     still: tuple[Strut, ...] = ()  # struts at rest, which are left out: their outputs are zero
     ground_moves: bool = False  # coordinates are relative to the ground then: see `on_moving_ground`
+
+    _repr_svg_ = shown_by("inerter.figures.plots.network:design_svg")
 
     def __post_init__(self) -> None:
         for name, kind in _KINDS.items():

@@ -13,6 +13,7 @@ from inerter.errors import DesignError, MechanismError
 from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.networks.elements import Free, Network, check_network
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
+from inerter.notebook import shown_by
 from inerter.validation import check_positive, is_number
 from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
 
@@ -65,6 +66,8 @@ class VehicleModel:
     moved: ClassVar[str] = "road"  # default input of a signal: this, a force, or "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
     question: ClassVar[str] = ""  # that an example of it answers, on a first screen
+
+    _repr_svg_ = shown_by("inerter.figures.plots.network:design_svg")
 
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
@@ -119,6 +122,8 @@ class Stage(ABC):
 
     vehicle: Vehicle
     network: Network
+
+    _repr_svg_ = shown_by("inerter.figures.plots.network:design_svg")
 
     @abstractmethod
     def mechanism(self) -> Mechanism:

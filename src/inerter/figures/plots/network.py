@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from inerter.figures.networks import network_figure
 from inerter.figures.style import style_context
 from inerter.networks.elements.algebra import Network
+from inerter.vehicle.vehicle import Vehicle
 
 
 def plot_network(networks: Network | Mapping[str, Network], *, values: bool = False) -> Figure:
@@ -29,7 +30,24 @@ def plot_network(networks: Network | Mapping[str, Network], *, values: bool = Fa
 
 def network_svg(network: Network) -> str:
     """Drawing of a network as SVG, as notebooks show it."""
+    return _svg(network)
+
+
+def design_svg(design: Vehicle) -> str:
+    """Drawing of the struts of a design as SVG, as notebooks show it."""
+    return _svg(networks_by_title({strut.name: strut.network for strut in design.mechanism().struts}))
+
+
+def networks_by_title(networks: Mapping[str, Network]) -> dict[str, Network]:
+    """Networks by their titles; mounts with the same network share one, and one alone has none."""
+    together: dict[Network, list[str]] = {}
+    for name, network in networks.items():
+        together.setdefault(network, []).append(name.replace("_", " "))
+    return {"" if len(together) == 1 else ", ".join(names): network for network, names in together.items()}
+
+
+def _svg(networks: Network | Mapping[str, Network]) -> str:
     drawn = StringIO()
     with style_context():
-        plot_network(network, values=True).savefig(drawn, format="svg", metadata={"Date": None})
+        plot_network(networks, values=True).savefig(drawn, format="svg", metadata={"Date": None})
     return drawn.getvalue()

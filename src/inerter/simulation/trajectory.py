@@ -173,10 +173,13 @@ class Trajectory:
     def rms(self, name: str) -> float:
         """Root of the mean square of an output over the time of the samples, by the trapezoidal rule.
 
-        The two ends of a period, which are one instant, then count as one sample.
+        Samples are evenly spaced; the two ends of a period, which are one instant, count as one of them.
         """
-        squares, duration = self[name] ** 2, self.time[-1] - self.time[0]
-        return float(np.sqrt(np.trapezoid(squares, self.time) / duration if duration > 0.0 else np.mean(squares)))
+        values = self[name]
+        if values.size == 1:
+            return abs(float(values[0]))
+        ends = 0.5 * (values[0] ** 2 + values[-1] ** 2)
+        return float(np.sqrt((values @ values - ends) / (values.size - 1)))
 
     def peak(self, name: str) -> Peak:
         """The sample of an output that is farthest from zero, and when it was."""

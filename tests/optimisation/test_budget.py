@@ -464,3 +464,10 @@ def test_a_range_rests_on_its_own_points_and_on_the_next_beyond_its_end(value):
         end = Crossing(value, 0.0, (value, value), better, OK)
         for steps, rests in ((-9.0, True), (-0.9, True), (0.9, True), (1.1, False), (9.0, False)):
             assert is_within_range(math.log(value) + sign * steps * step, end, step) is rests
+
+
+def test_a_baseline_in_which_the_name_is_ambiguous_is_refused():
+    """It was left as it is, as if it had no such element."""
+    baseline = paper_quarter_car(Spring(100e3) | Damper(5e3) - Spring(3e5))
+    with pytest.raises(DesignError, match="'k' is ambiguous: "):
+        break_even(conventional(), baseline, J1, parameter="k", method=Norm())

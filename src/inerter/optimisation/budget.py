@@ -153,7 +153,7 @@ def _budget(
     exact = method.nonlinearity_support is NonlinearitySupport.NEITHER
     fixed = _with_fixed_roads(design, index, method)
     by_label = chosen[0].label == parameter
-    same = None if _has_element(baseline, parameter, by_label) else evaluate(baseline, index, fixed)
+    same = None if _matching(baseline, parameter, by_label) else evaluate(baseline, index, fixed)
 
     def designs_at(logarithm: float) -> tuple[Vehicle, Vehicle]:
         value = float(np.exp(logarithm))
@@ -218,13 +218,9 @@ def with_element(vehicle: Vehicle, parameter: str, value: float, by_label: bool 
 
 def _elements(vehicle: Vehicle, parameter: str, by_label: bool | None = None) -> list[Element]:
     """The elements of a name; raises `DesignError` for an unknown name, or elements of several kinds."""
-    in_struts, in_tyres = mounted_elements(vehicle)
-    all_elements = [*in_struts, *in_tyres]
-    named = [e for e in in_struts if e.label == parameter] or [e for e in in_tyres if e.label == parameter]
-    kind: list[Element] = [e for e in all_elements if e.may_vanish and e.key == parameter]
-    chosen = (named or kind) if by_label is None else named if by_label else kind
+    chosen = _matching(vehicle, parameter, by_label)
     if not chosen:
-        labels = ", ".join(dict.fromkeys(e.label for e in all_elements))
+        labels = ", ".join(dict.fromkeys(e.label for several in mounted_elements(vehicle) for e in several))
         raise DesignError(
             f"unknown element {parameter!r}; available: {labels}, or {_kinds()} for all of a kind. For the break-even "
             f"friction or backlash of a design without it, add a Friction(0.0) or Gap(0.0)."
@@ -237,16 +233,17 @@ def _elements(vehicle: Vehicle, parameter: str, by_label: bool | None = None) ->
     return chosen
 
 
+def _matching(vehicle: Vehicle, parameter: str, by_label: bool | None) -> list[Element]:
+    """The elements of a label, in struts before tyres, or of a kind; for None those of a kind if none has the label."""
+    in_struts, in_tyres = mounted_elements(vehicle)
+    named = [e for e in in_struts if e.label == parameter] or [e for e in in_tyres if e.label == parameter]
+    kind: list[Element] = [e for e in (*in_struts, *in_tyres) if e.may_vanish and e.key == parameter]
+    return (named or kind) if by_label is None else named if by_label else kind
+
+
 def _kinds() -> str:
     """Names of the kinds that select all of their elements."""
     return " or ".join(f'"{kind.key}"' for kind in ELEMENTS.values() if kind.may_vanish)
-
-
-def _has_element(vehicle: Vehicle, parameter: str, by_label: bool) -> bool:
-    try:
-        return bool(_elements(vehicle, parameter, by_label))
-    except DesignError:
-        return False
 
 
 def _bounds(chosen: Sequence[Element], parameter: str, given: object) -> tuple[float, float]:

@@ -303,7 +303,7 @@ def test_a_baseline_with_friction_is_optimised_by_the_method_of_the_gains(tmp_pa
     assert float(row["improvement_percent"]) == pytest.approx(gain, abs=1e-3)
     assert row["status"] == "ok"
     assert row["improvement_doubt"].startswith("inaccurate: baseline: friction 'f'")
-    assert f"% on S1 ({row['improvement_doubt'].rstrip('.')})" in " ".join(search_sentences(found))
+    assert f"% better than S1 ({row['improvement_doubt'].rstrip('.')})" in " ".join(search_sentences(found))
 
 
 def test_results_are_in_the_order_of_the_study_whatever_is_ready_first(

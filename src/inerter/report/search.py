@@ -9,6 +9,7 @@ from typing import Any
 
 import inerter
 from inerter.atomic_io import write_text
+from inerter.decision.results import Improvement
 from inerter.figures.search import FRONTIER, draw_search, figure_names
 from inerter.files.common.folder import FIGURES, REPORT
 from inerter.files.common.suggest import some
@@ -34,7 +35,6 @@ from inerter.formatting import (
     capital,
     format_count,
     format_list,
-    format_percent,
     format_percent_size,
     format_quantity,
     format_share,
@@ -82,7 +82,7 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
             continue
         best, smaller = one.result.ranking[0], one.result.near_optimal(_NEAR)[0]
         gain = improvement(best.value, one.baseline)
-        against = f", {format_percent(gain)} on {found.study.baseline}" if isfinite(gain) else ""
+        against = _comparison(Improvement(gain), found.study.baseline)
         near = ""
         if smaller.n_elements < best.n_elements:
             behind = format_percent_size(-improvement(smaller.value, best.value))
@@ -115,6 +115,13 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
             )
 
 
+def _comparison(over: Improvement, baseline: str | None) -> str:
+    """Clause that compares a network with the baseline; empty without one."""
+    if not isfinite(over.percent):
+        return ""
+    return f", as good as {baseline}" if over.is_equal else f", {over.words} than {baseline}"
+
+
 def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
     """The best network with real inerters by each method, and those without a reliable value."""
     asked = found.study.real_inerters
@@ -127,8 +134,7 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
             continue
         best = min(known, key=lambda each: each.value)
         gain = one.real_gain(best)
-        told = format_percent(gain, bound=one.real_gain_bound(best))
-        against = f", {told} on {found.study.baseline}" if isfinite(gain) else ""
+        against = _comparison(Improvement(gain, bound=one.real_gain_bound(best)), found.study.baseline)
         doubts = ["" if best.ok else best.status_text, one.real_gain_status(best).doubt if isfinite(gain) else ""]
         doubt = "; ".join(text.rstrip(".") for text in doubts if text)
         yield (

@@ -135,7 +135,7 @@ def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     for key, place in {"1": "", "3": "panel answers", "4": "panel tabs"}.items():
         page.keyboard.press(key)
         wait_until(lambda place=place: page.evaluate(focus) == place)
-    assert page.locator("#tab-margins[aria-selected=true]").count() == 1
+    page.wait_for_selector("#tab-margins[aria-selected=true]", state="attached")
     page.keyboard.press("?")
     page.wait_for_selector("dialog[open]")
     page.keyboard.press("Escape")

@@ -44,6 +44,7 @@ def searching(visitor: Visitor, tmp_path: Path) -> Visitor:
     path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
     visitor.open(path)
     visitor.wait_for_text("k | any")
+    visitor.settled()
     return visitor
 
 

@@ -129,10 +129,10 @@ def explanations(
             restart, [(known, a) for a in last[:_RESTARTED]], map, counter("stiffer shafts", _RESTARTED)
         )
         last[:_RESTARTED] = again
-    return _ranked([a.explanation for a in (*last, *first[_FITTED:])], causes.hidden)
+    return _rank([a.explanation for a in (*last, *first[_FITTED:])], causes.hidden)
 
 
-def _ranked(every: Sequence[Explanation], hidden: bool) -> list[Explanation]:
+def _rank(every: Sequence[Explanation], hidden: bool) -> list[Explanation]:
     """One explanation of each name, the most likely first; of a misfit that noise hides, those that explain much."""
     found: dict[Suspect, Explanation] = {}
     for e in every:

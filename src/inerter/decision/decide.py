@@ -123,10 +123,9 @@ def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool
     if base is None or by is None or not isfinite(by.percent):
         return _sentence_without_baseline(contest, rest), True
     if base.breaks_limit and (by.is_equal or by.percent < 0.0):
-        compared = f"as good as {base.name}" if by.is_equal else f"{by.words} than {base.name}"
         return (
             f"{_best(contest)} in {lead.goal.words} of the struts that keep the limits{_friction(contest)}, "
-            f"{compared}, which does not keep them.",
+            f"{by.than(base.name)}, which does not keep them.",
             True,
         )
     if len(winners) == 1:

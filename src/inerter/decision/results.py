@@ -40,6 +40,10 @@ class Improvement:
         size = format_percent_size(abs(self.percent), self.error, self.bound)
         return f"{size} {'better' if self.percent > 0.0 else 'worse'}"
 
+    def than(self, other: str) -> str:
+        """Comparison with the other design in words, to follow "is": "5 % better than S1", "as good as S1"."""
+        return f"as good as {other}" if self.is_equal else f"{self.words} than {other}"
+
 
 def percent_below(value: float, base: float) -> float:
     """How far a value lies below that of the baseline [%]; nan where they cannot be compared."""

@@ -117,9 +117,7 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
 
 def _comparison(over: Improvement, baseline: str | None) -> str:
     """Clause that compares a network with the baseline; empty without one."""
-    if not isfinite(over.percent):
-        return ""
-    return f", as good as {baseline}" if over.is_equal else f", {over.words} than {baseline}"
+    return f", {over.than(str(baseline))}" if isfinite(over.percent) else ""
 
 
 def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:

@@ -139,8 +139,7 @@ def _beyond_speed(results: xr.Dataset, where: Mapping[str, Any]) -> np.ndarray[A
 def _versus(better: float, baseline: str, layout: str) -> str:
     if not np.isfinite(better) or not baseline or layout == baseline:
         return ""
-    by = Improvement(better)
-    return f" (as good as {baseline})" if by.is_equal else f" ({by.words} than {baseline})"
+    return f" ({Improvement(better).than(baseline)})"
 
 
 def _at(results: xr.Dataset, place: int) -> str:

@@ -414,10 +414,9 @@ def _scatter_sentence(asked: MarginRequest, found: ScatterMargin, bound: float) 
         return f"{given}: the distribution of {asked.words} is not computed ({found.message.rstrip('.')})."
     quantile = format_quantity(found.quantiles[str(SHARES[-1])], found.unit, bound=bound)
     above = format_percent_size(found.worst_percent)
-    compared = Improvement(found.worst_improvement_percent)
-    versus = "as good as" if compared.is_equal else f"{compared.words} than"
+    versus = Improvement(found.worst_improvement_percent).than(asked.baseline_layout)
     doubt = f" Not certain: {found.message.rstrip('.')}." if found.status != StatusKind.OK else ""
     return (
-        f"{given}: at worst {asked.words} of {asked.layout} is {above} above its nominal value, and {versus} "
-        f"{asked.baseline_layout} at nominal values; 95 % of designs are below {quantile}.{doubt}"
+        f"{given}: at worst {asked.words} of {asked.layout} is {above} above its nominal value, and {versus} at "
+        f"nominal values; 95 % of designs are below {quantile}.{doubt}"
     )

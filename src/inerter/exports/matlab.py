@@ -14,18 +14,17 @@ from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
 from inerter.exports.named_system import NamedQuantity, NamedSystem
 from inerter.exports.request import ExportSpec
-from inerter.records.record import Record
 from inerter.records.writers import write_record_matlab
 
 Matrix = NDArray[np.float64]
 
 
 def _make(request: ExportSpec, suffix: str) -> str | bytes:
-    if isinstance(request.of, Record):
+    if (record := request.record) is not None:
         if suffix == ".m":
             raise ExportError("A record goes to MATLAB as a .mat file; a script holds a linear model.")
         content = io.BytesIO()
-        write_record_matlab(request.of, content)
+        write_record_matlab(record, content)
         return content.getvalue()
     system = request.system_as_it_is()
     return matlab_script(system) if suffix == ".m" else matlab_file(system)

@@ -122,6 +122,15 @@ class ExportSpec:
         return found, notes
 
     @property
+    def record(self) -> Record | None:
+        """The record, if it is one; raises `ExportError` for a choice of outputs, since it holds all channels."""
+        if not isinstance(self.of, Record):
+            return None
+        if self.outputs is not None or self.inputs is not None:
+            raise ExportError("An export of a record has no choice of inputs or outputs: it holds all channels.")
+        return self.of
+
+    @property
     def hertz(self) -> NDArray[np.float64] | None:
         """Frequencies [Hz] that were asked for; raises `ExportError` unless they are positive numbers."""
         if self.frequencies is None:

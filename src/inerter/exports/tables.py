@@ -86,8 +86,8 @@ def _index_gains(request: ExportSpec, name: str, index: Index, omega: Matrix) ->
 
 def _make_csv(request: ExportSpec, suffix: str) -> str:
     content = io.StringIO()
-    if isinstance(request.of, Record):
-        write_record_table(request.of, content, ",")
+    if (record := request.record) is not None:
+        write_record_table(record, content, ",")
         return content.getvalue()
     writer = csv.writer(content, lineterminator="\n")
     if isinstance(request.of, Trajectory):
@@ -122,8 +122,8 @@ def _columns(found: ExportedResponses) -> Iterator[tuple[str, Matrix]]:
 def _make_netcdf(request: ExportSpec, suffix: str) -> bytes:
     if isinstance(request.of, Trajectory):
         return netcdf_content(request.of.to_xarray(_outputs_of(request)))
-    if isinstance(request.of, Record):
-        return netcdf_content(_record_dataset(request.of))
+    if (record := request.record) is not None:
+        return netcdf_content(_record_dataset(record))
     return netcdf_content(responses_dataset(responses_of(request)))
 
 

@@ -10,8 +10,8 @@ from pkgutil import resolve_name
 from typing import Any
 
 
-def shown_by(home: str) -> Callable[[Any], str]:
-    """Method of a class that shows its instances by a function, given as "module:name".
+def shown_by(home: str) -> Callable[[Any], str | None]:
+    """Method of a class that shows its instances by a function, "module:name"; None for what cannot be shown.
 
     >>> class Named:
     ...     _repr_html_ = shown_by("html:escape")
@@ -22,7 +22,8 @@ def shown_by(home: str) -> Callable[[Any], str]:
     'shown'
     """
 
-    def show(result: Any) -> str:
-        return str(resolve_name(home)(result))
+    def show(result: Any) -> str | None:
+        shown: str | None = resolve_name(home)(result)
+        return shown
 
     return show

@@ -84,3 +84,8 @@ def test_a_design_is_a_drawing_of_its_struts(design: it.Vehicle, drawn: set[str]
     assert ElementTree.fromstring(svg).tag.endswith("svg")
     written = {text.replace("\N{NO-BREAK SPACE}", " ") for text in re.findall(r"<!-- (.*?) -->", svg)}
     assert drawn <= written | set(" ".join(written).split()), written
+
+
+def test_a_design_without_struts_has_no_drawing() -> None:
+    wheel, tyre = it.Coordinate("wheel", 30.0), it.Tyre("tyre", it.Spring(1e5), {"wheel": 1.0}, "road")
+    assert it.Mechanism((wheel,), (), (tyre,), (it.RoadInput("road"),))._repr_svg_() is None

@@ -33,9 +33,10 @@ def network_svg(network: Network) -> str:
     return _svg(network)
 
 
-def design_svg(design: Vehicle) -> str:
-    """Drawing of the struts of a design as SVG, as notebooks show it."""
-    return _svg(networks_by_title({strut.name: strut.network for strut in design.mechanism().struts}))
+def design_svg(design: Vehicle) -> str | None:
+    """Drawing of the struts of a design as SVG, as notebooks show it; None if it has none."""
+    struts = {strut.name: strut.network for strut in design.mechanism().struts}
+    return _svg(networks_by_title(struts)) if struts else None
 
 
 def networks_by_title(networks: Mapping[str, Network]) -> dict[str, Network]:

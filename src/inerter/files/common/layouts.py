@@ -13,6 +13,7 @@ from inerter.files.common.codec import (
     INVALID,
     REQUIRED,
     Codec,
+    Declaration,
     LoadContext,
     RawEntry,
     TableCodec,
@@ -106,9 +107,14 @@ class LayoutCodec(Codec):
         return any_of([*each.values(), EXPRESSION.schema(), own])
 
 
-def layouts_codec(model: str = "") -> NamesCodec:
-    """The section [layouts], for vehicles of one model, or of that which the file says."""
-    return NamesCodec(LayoutCodec(model), layout_name, 1)
+def layouts_section(line: str = 'lines such as S1 = "k | c"', model: str = "") -> Declaration:
+    """The section [layouts], for vehicles of one model, or of that which the file says; `line` is an example."""
+    return section(
+        "layouts",
+        NamesCodec(LayoutCodec(model), layout_name, 1),
+        "Networks of the elements: | in parallel, - in series.",
+        f"a section [layouts] with {line}",
+    )
 
 
 def _mounts_table(known: Mapping[str, MountEntry]) -> TableCodec:

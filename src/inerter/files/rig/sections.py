@@ -5,7 +5,7 @@ from __future__ import annotations
 from inerter.files.common.codec import TableCodec, key, keyed_dataclass, section, table_of, without_none
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
-from inerter.files.common.layouts import layouts_codec
+from inerter.files.common.layouts import layouts_section
 from inerter.files.common.signals import signal_codec
 from inerter.registry import cache_until_registration
 from inerter.vehicle.rig import Rig
@@ -45,12 +45,7 @@ def rig_codec() -> TableCodec:
                 "Elements of the device, by names that you choose. The unit determines the kind.",
                 'a section [elements] with lines such as b = "113 kg"',
             ),
-            section(
-                "layouts",
-                layouts_codec(Rig.key),
-                "Networks of the elements: | in parallel, - in series.",
-                'a section [layouts] with a line such as screw = "(ks | cs) - (b | f)"',
-            ),
+            layouts_section('a line such as screw = "(ks | cs) - (b | f)"', Rig.key),
             section(
                 "signal",
                 signal_codec(),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from inerter.files.common.codec import TableCodec, key, keyed_dataclass, section, table_of
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import TEXT, YES_OR_NO, one_of, positive, whole, word
-from inerter.files.common.layouts import layouts_codec
+from inerter.files.common.layouts import layouts_section
 from inerter.files.common.roads import road_codec
 from inerter.files.common.signals import signal_codec
 from inerter.files.common.vehicle_tables import vehicle_codec
@@ -68,12 +68,7 @@ def simulation_codec() -> TableCodec:
                 "Elements of the struts, by names that you choose. The unit determines the kind.",
                 'a section [elements] with lines such as k = "120 kN/m"',
             ),
-            section(
-                "layouts",
-                layouts_codec(),
-                "Networks of the elements: | in parallel, - in series.",
-                'a section [layouts] with lines such as S1 = "k | c"',
-            ),
+            layouts_section(),
             section(
                 "signal",
                 signal_codec(),

@@ -41,7 +41,7 @@ from inerter.files.common.entries import (
     whole,
     word,
 )
-from inerter.files.common.layouts import layouts_codec
+from inerter.files.common.layouts import layouts_section
 from inerter.files.common.problem import invalid_entry
 from inerter.files.common.roads import road_codec
 from inerter.files.common.schema import words_schema
@@ -405,12 +405,7 @@ def study_codec() -> TableCodec:
             "A value is fixed, or a design variable between two bounds. A free network is found by inerter search.",
             'a section [elements] with lines such as k = "120 kN/m"',
         ),
-        section(
-            "layouts",
-            layouts_codec(),
-            "Networks of the elements: | in parallel, - in series.",
-            'a section [layouts] with lines such as S1 = "k | c"',
-        ),
+        layouts_section(),
         section(
             "indices",
             own_indices_codec(),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from inerter.files.common.codec import Codec, Declaration, KeyPath, LoadContext, TableCodec
+from inerter.files.common.codec import Codec, Declaration, KeyPath, LoadContext, TableCodec, section
 from inerter.files.common.codecs import TaggedCodec, any_of
 from inerter.files.common.entries import TEXT, one_of
 from inerter.files.common.roads import road_of
@@ -101,9 +101,14 @@ class SignalCodec(Codec):
             yield from codec.table_codecs(place)
 
 
-def signal_codec() -> SignalCodec:
-    """Section [signal] with all kinds of signals."""
-    return SignalCodec({unit: _in_unit(unit) for unit in UNITS})
+def signal_section(kind: str) -> Declaration:
+    """The section [signal] with all kinds of signals; `kind` is that of an example."""
+    return section(
+        "signal",
+        SignalCodec({unit: _in_unit(unit) for unit in UNITS}),
+        "Signal of one input; its kind determines the other keys of this section.",
+        f'a section [signal] with kind = "{kind}"',
+    )
 
 
 def _in_unit(unit: str) -> TaggedCodec:

@@ -6,7 +6,7 @@ from inerter.files.common.codec import TableCodec, key, keyed_dataclass, section
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
 from inerter.files.common.layouts import layouts_section
-from inerter.files.common.signals import signal_codec
+from inerter.files.common.signals import signal_section
 from inerter.registry import cache_until_registration
 from inerter.vehicle.rig import Rig
 
@@ -46,12 +46,7 @@ def rig_codec() -> TableCodec:
                 'a section [elements] with lines such as b = "113 kg"',
             ),
             layouts_section('a line such as screw = "(ks | cs) - (b | f)"', Rig.key),
-            section(
-                "signal",
-                signal_codec(),
-                "Signal of one input; its kind determines the other keys of this section.",
-                'a section [signal] with kind = "cosine"',
-            ),
+            signal_section("cosine"),
             section(
                 "rig",
                 table_of(RigSettings, make=without_none),

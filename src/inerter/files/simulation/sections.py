@@ -7,7 +7,7 @@ from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import TEXT, YES_OR_NO, one_of, positive, whole, word
 from inerter.files.common.layouts import layouts_section
 from inerter.files.common.roads import road_codec
-from inerter.files.common.signals import signal_codec
+from inerter.files.common.signals import signal_section
 from inerter.files.common.vehicle_tables import vehicle_codec
 from inerter.files.common.vehicles import models
 from inerter.registry import cache_until_registration
@@ -69,12 +69,7 @@ def simulation_codec() -> TableCodec:
                 'a section [elements] with lines such as k = "120 kN/m"',
             ),
             layouts_section(),
-            section(
-                "signal",
-                signal_codec(),
-                "Signal of one input; its kind determines the other keys of this section.",
-                'a section [signal] with kind = "multisine"',
-            ),
+            signal_section("multisine"),
             section(
                 "simulation",
                 table_of(SimulationSettings, make=dict),

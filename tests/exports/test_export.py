@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -16,6 +17,9 @@ from inerter.exports.registry import EXPORTS
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
 CAR = paper_quarter_car(K | C - B)
 REAL = paper_quarter_car(K | C - (B | it.Friction(20.0)) | it.Spring(1e4, "stop") - it.Gap(0.01))
+TIME = np.linspace(0.0, 1.0, 101)
+TRAJECTORY = it.simulate(it.Rig(it.Damper(100.0)), displacement=it.sine(0.01, 1.0), duration=1.0)
+RECORD = it.Record(TIME, 1e-3 * np.sin(TIME), np.cos(TIME))
 FILES = [kind.key for kind in EXPORTS.values() if kind.is_file]
 LINEAR = [key for key in EXPORTS if key not in ("svg", "pdf", "latex", "fmu", "fmu3", "simulation")]
 
@@ -50,9 +54,9 @@ def test_a_file_is_whole_and_replaced_only_on_request(key: str, tmp_path: Path) 
         assert path.read_bytes() == (made.encode() if isinstance(made, str) else made)
     before = path.read_bytes()
     with pytest.raises(it.InerterError, match="exists"):
-        it.export(REAL, key, path, linear=key != "simulation")
+        it.export(REAL, key, path, linear="linear" in EXPORTS[key].takes)
     assert path.read_bytes() == before
-    it.export(REAL, key, path, linear=key != "simulation", overwrite=True)
+    it.export(REAL, key, path, linear="linear" in EXPORTS[key].takes, overwrite=True)
     assert path.read_bytes() != before
     assert [one.name for one in tmp_path.iterdir()] == [path.name]
 
@@ -88,6 +92,68 @@ def test_objects_are_no_files(tmp_path: Path) -> None:
 def test_an_unknown_option_is_told_with_all_that_there_are() -> None:
     with pytest.raises(TypeError, match=r"export\(\) has no option 'output'\. Its options: inputs, outputs, linear, "):
         it.export(CAR, "scipy", output="tyre_load")
+
+
+OPTIONS = {
+    "inputs": "road",
+    "outputs": ["tyre_load"],
+    "linear": True,
+    "form": "descriptor",
+    "frequencies": np.array([1.0, 2.0]),
+    "indices": {"J1": it.LoadCarrying()},
+    "part": "strut",
+    "speed": 10.0,
+    "platforms": ["windows"],
+}
+
+
+class WatchedSpec(it.ExportSpec):
+    """A request that keeps the names of the fields that were read."""
+
+    read: ClassVar[set[str]] = set()
+
+    def __getattribute__(self, name: str) -> object:
+        WatchedSpec.read.add(name)
+        return super().__getattribute__(name)
+
+
+@pytest.mark.parametrize("key", [key for key in EXPORTS if key not in ("fmu", "fmu3")])
+def test_a_kind_reads_the_options_that_it_takes(key: str) -> None:
+    kind = EXPORTS[key]
+    WatchedSpec.read.clear()
+    kind.make(WatchedSpec(CAR, key), kind.suffixes[0] if kind.is_file else "")
+    assert set(kind.takes) <= WatchedSpec.read
+
+
+@pytest.mark.parametrize("key", EXPORTS)
+def test_an_option_that_a_kind_does_not_take_is_refused(key: str) -> None:
+    for option in OPTIONS.keys() - EXPORTS[key].takes:
+        with pytest.raises(it.InerterError, match=f"An export to {key} does not accept {option}: "):
+            it.export(CAR, key, **{option: OPTIONS[option]})
+
+
+@pytest.mark.parametrize(
+    ("of", "key", "option"),
+    [
+        *((TRAJECTORY, "csv", one) for one in ("inputs", "linear", "frequencies", "indices")),
+        (TRAJECTORY, "netcdf", "frequencies"),
+        *((RECORD, "csv", one) for one in ("inputs", "outputs", "frequencies")),
+        (RECORD, "matlab", "form"),
+        (K, "spice", "part"),
+        (K | C, "fmu", "outputs"),
+        (K | C, "fmu", "linear"),
+        (REAL, "fmu", "inputs"),
+    ],
+)
+def test_an_option_without_meaning_for_the_object_is_refused(of: object, key: str, option: str) -> None:
+    with pytest.raises(it.InerterError, match=f" does not accept {option}: "):
+        it.export(of, key, **{option: OPTIONS[option]})  # type: ignore[arg-type]
+
+
+def test_a_strut_alone_has_neither_outputs_nor_a_speed() -> None:
+    for option in ("outputs", "speed", "linear"):
+        with pytest.raises(it.InerterError, match=f"An FMU of a strut alone does not accept {option}: "):
+            it.export(CAR, "fmu", part="strut", **{option: OPTIONS[option]})
 
 
 def test_unknown_kinds_and_forms() -> None:

@@ -137,8 +137,6 @@ def test_a_record_is_written_to_the_last_bit(tmp_path: Path) -> None:
     for kind, suffix in (("csv", ".csv"), ("matlab", ".mat")):
         again = it.read_record(it.export(record, kind, tmp_path / f"bench{suffix}"))
         assert np.array_equal(again.force, record.force)
-    with pytest.raises(it.InerterError, match="no choice of inputs or outputs"):
-        it.export(record, "csv", outputs=["force"])
     with pytest.raises(it.InerterError, match="a script holds a linear model"):
         it.export(record, "matlab", tmp_path / "bench.m")
     with pytest.raises(it.InerterError, match="requires a vehicle or a LinearSystem, got Record"):

@@ -20,11 +20,12 @@ def export_design(body: Mapping[str, Any]) -> bytes:
     kind = EXPORTS[body["kind"]]
     study = study_from(body["study"])
     design = one_design(study, body)
+    indices = [body["index"]] if body["index"] else study.indices[:1]
     request = ExportSpec(
         design.vehicle,
         kind.key,
         linear=body["linear"],
-        indices={index: study.index(index) for index in ([body["index"]] if body["index"] else study.indices[:1])},
+        indices={index: study.index(index) for index in indices} if "indices" in kind.takes else None,
         conventions=study.conventions,
         title=f"{' '.join(study.title.split())}, {design.name}",
     )

@@ -57,7 +57,7 @@ def export(
             to,
             **options,
             speed=delayed,
-            indices=indices,
+            indices=indices if "indices" in kind.takes else None,
             conventions=design.study.conventions,
             title=", ".join(filter(None, titles)),
         )

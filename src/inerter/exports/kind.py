@@ -8,12 +8,27 @@ from typing import Any
 
 from inerter.errors import ExportError
 from inerter.exports.request import ExportSpec
+from inerter.networks.elements import Network
+from inerter.records.record import Record
+from inerter.simulation.trajectory import Trajectory
 
 OPTIONS = {
+    "inputs": "a choice of inputs",
+    "outputs": "a choice of outputs",
+    "linear": "a model without friction and gaps",
+    "form": "another form",
+    "frequencies": "a choice of frequencies",
+    "indices": "curves of indices",
     "part": "a strut alone",
     "speed": "one road for all axles",
     "platforms": "other platforms",
-}  # that not every kind can say
+}  # that not every kind has
+LINEAR_MODEL = ("inputs", "outputs", "linear", "form")
+_OF_OBJECTS: dict[type, tuple[tuple[str, ...], str]] = {
+    Record: ((), "it holds all channels"),
+    Trajectory: (("outputs",), "it holds outputs over time"),
+    Network: (("linear", "platforms"), "it holds one network"),
+}  # the options that one of these has, whatever the kind, and why it has no others
 
 
 @dataclass(frozen=True)
@@ -22,7 +37,7 @@ class ExportKind:
 
     `make(request, suffix)` gives the contents of a file with one of the `suffixes`, text or bytes; of a kind without
     suffixes, an object of Python. `requires` is what the machine must have for it; it `takes` those of `OPTIONS` that
-    its format has.
+    `make` reads, and the others are refused.
 
     >>> import inerter as it
     >>> kind = it.EXPORTS["modelica"]
@@ -43,8 +58,12 @@ class ExportKind:
         return bool(self.suffixes)
 
     def contents(self, request: ExportSpec, suffix: str) -> Any:
-        """Contents by `make`; raises `ExportError` for an option that this kind does not take."""
-        for option, text in OPTIONS.items():
-            if getattr(request, option) and option not in self.takes:
+        """Contents by `make`; raises `ExportError` for an option that this kind, or the object, does not have."""
+        for option in (name for name in OPTIONS if request.has(name)):
+            if option not in self.takes:
+                text = OPTIONS[option]
                 raise ExportError(f"An export to {self.key} does not accept {option}: it does not support {text}.")
+            for kind, (options, reason) in _OF_OBJECTS.items():
+                if isinstance(request.of, kind) and option not in options:
+                    raise ExportError(f"An export of a {kind.__name__.lower()} does not accept {option}: {reason}.")
         return self.make(request, suffix)

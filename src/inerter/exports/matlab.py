@@ -11,7 +11,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError
-from inerter.exports.kind import ExportKind
+from inerter.exports.kind import LINEAR_MODEL, ExportKind
 from inerter.exports.named_system import NamedQuantity, NamedSystem
 from inerter.exports.request import ExportSpec
 from inerter.records.writers import write_record_matlab
@@ -90,4 +90,6 @@ def exact(number: float) -> str:
     return repr(float(number)) if number else "0"
 
 
-MATLAB = ExportKind("matlab", "matrices with names and units for MATLAB and Octave", (".mat", ".m"), _make)
+MATLAB = ExportKind(
+    "matlab", "matrices with names and units for MATLAB and Octave", (".mat", ".m"), _make, takes=LINEAR_MODEL
+)

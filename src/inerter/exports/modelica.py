@@ -257,4 +257,4 @@ def _si(unit: str) -> str:
     return unit.replace("^", "").replace("N m", "N.m")
 
 
-MODELICA = ExportKind("modelica", "Modelica source, of parts of Modelica.Mechanics", (".mo",), _make)
+MODELICA = ExportKind("modelica", "Modelica source, of parts of Modelica.Mechanics", (".mo",), _make, takes=("linear",))

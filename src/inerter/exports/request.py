@@ -56,6 +56,11 @@ class ExportSpec:
     speed: float | None = None
     platforms: Sequence[str] = ()
 
+    def has(self, option: str) -> bool:
+        """Whether an option was given, to a value other than its default."""
+        value, default = getattr(self, option), getattr(ExportSpec, option)
+        return type(value) is not type(default) or bool(value != default)
+
     def system(self, form: str = "") -> NamedSystem:
         """The linear model, in the form that was asked for, or else in `form`."""
         of = self.of if isinstance(self.of, LinearSystem) else self._vehicle("a vehicle or a LinearSystem")
@@ -123,12 +128,8 @@ class ExportSpec:
 
     @property
     def record(self) -> Record | None:
-        """The record, if it is one; raises `ExportError` for a choice of outputs, since it holds all channels."""
-        if not isinstance(self.of, Record):
-            return None
-        if self.outputs is not None or self.inputs is not None:
-            raise ExportError("An export of a record has no choice of inputs or outputs: it holds all channels.")
-        return self.of
+        """The record, if it is one."""
+        return self.of if isinstance(self.of, Record) else None
 
     @property
     def hertz(self) -> NDArray[np.float64] | None:

@@ -34,10 +34,6 @@ _AMPLITUDES = {"m": 1e-3, "N": 100.0, "N m": 100.0, "m/s^2": 1.0}  # of a sine o
 
 
 def _make(request: ExportSpec, suffix: str) -> str:
-    if request.linear:
-        raise ExportError(
-            "A simulation file has the friction and gaps of the design. Leave --linear (linear=True) out."
-        )
     names = _ElementNames()
     table, networks = _vehicle(request.vehicle, names)
     layout = StrutLayout({mount: names.expression(network) for mount, network in networks.items()})
@@ -160,5 +156,5 @@ SIMULATION = ExportKind(
     "simulation file for inerter simulate, with friction and gaps",
     (".toml",),
     _make,
-    takes=("speed",),
+    takes=("indices", "speed"),
 )

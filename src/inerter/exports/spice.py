@@ -93,4 +93,6 @@ class _Netlist:
         return f"{self._names.add(f'{letter}{element.label}')} {upper} {lower} {exact(value)}"
 
 
-SPICE = ExportKind("spice", "netlists of the struts, force as current", (".cir", ".sp"), _make, takes=("part",))
+SPICE = ExportKind(
+    "spice", "netlists of the struts, force as current", (".cir", ".sp"), _make, takes=("linear", "part")
+)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,7 +56,7 @@ def responses_of(request: ExportSpec) -> ExportedResponses:
 
     Raises `ExportError` for a pole at one of the frequencies that were asked for.
     """
-    system = replace(request, form="").system()
+    system = request.system()
     hertz = request.hertz
     if hertz is None:
         hertz = resonant_range([system.A]) / (2.0 * np.pi)
@@ -177,7 +177,14 @@ def _in_brackets(unit: str) -> str:
     return f"({unit})" if "/" in unit or " " in unit else unit or "1"
 
 
-CSV = ExportKind("csv", "table of the frequency responses, of a trajectory or of a record", (".csv",), _make_csv)
+_OPTIONS = ("inputs", "outputs", "linear", "frequencies", "indices")
+CSV = ExportKind(
+    "csv", "table of the frequency responses, of a trajectory or of a record", (".csv",), _make_csv, takes=_OPTIONS
+)
 NETCDF = ExportKind(
-    "netcdf", "dataset of the frequency responses, of a trajectory or of a record", (".nc",), _make_netcdf
+    "netcdf",
+    "dataset of the frequency responses, of a trajectory or of a record",
+    (".nc",),
+    _make_netcdf,
+    takes=_OPTIONS,
 )

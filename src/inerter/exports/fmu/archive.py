@@ -13,13 +13,14 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.errors import ExportError
 from inerter.exports.fmu.arrivals import on_one_road
 from inerter.exports.fmu.descriptions import FmuModel, build_description, description_2, description_3
 from inerter.exports.fmu.equations import equations_of
 from inerter.exports.fmu.platforms import libraries
 from inerter.exports.fmu.strut import port_masses, strut_system
 from inerter.exports.fmu.switching import SwitchingSystem, switching_system, without_reactions
-from inerter.exports.kind import ExportKind
+from inerter.exports.kind import OPTIONS, ExportKind
 from inerter.exports.modelica import package_name
 from inerter.exports.named_system import NamedQuantity
 from inerter.exports.request import ExportSpec
@@ -55,6 +56,7 @@ def _make_3(request: ExportSpec, suffix: str) -> bytes:
 def _system(request: ExportSpec) -> SwitchingSystem:
     """A strut alone, or a whole vehicle."""
     if isinstance(request.of, Network) or request.part:
+        _refuse_options(request, ("inputs", "outputs", "linear", "speed"), "a strut alone")
         ((name, network),) = request.networks.items()
         ends = port_masses(request.mechanism, request.strut) if request.part else (0.0, 0.0)
         return strut_system(network, ends, request.title or name)
@@ -65,16 +67,23 @@ def _system(request: ExportSpec) -> SwitchingSystem:
 def _vehicle_system(request: ExportSpec) -> SwitchingSystem:
     """The state space, by default with displacements that drift with the road too: they begin at zero."""
     if isinstance(request.of, LinearSystem):
-        return without_reactions(replace(request, form="").system())
+        return without_reactions(request.system())
     mechanism = request.mechanism
     if not request.linear and _is_nonlinear(mechanism):
+        _refuse_options(request, ("inputs",), "a design with friction or gaps")
         wanted = None if request.outputs is None else check_names("outputs", request.outputs)
         return switching_system(mechanism, wanted, request.title)
     if request.outputs is None:
         request = replace(request, outputs=main_outputs(mechanism))
     inputs = input_names(mechanism) if request.inputs is None else check_names("inputs", request.inputs)
     equations = equations_of(mechanism, tuple(inputs), check_names("outputs", request.outputs))
-    return without_reactions(replace(request, form="").system(), equations)
+    return without_reactions(request.system(), equations)
+
+
+def _refuse_options(request: ExportSpec, options: Sequence[str], of: str) -> None:
+    """Raise `ExportError` for an option that only the FMU of another object has."""
+    for option in filter(request.has, options):
+        raise ExportError(f"An FMU of {of} does not accept {option}: it does not support {OPTIONS[option]}.")
 
 
 def _is_nonlinear(mechanism: Mechanism) -> bool:
@@ -184,6 +193,11 @@ def _matrix(name: str, matrix: Matrix) -> str:
     return f"static const double {name}[{rows}][{columns}] = {{\n{body}\n}};"
 
 
-_KIND = partial(ExportKind, suffixes=(".fmu",), requires="a C compiler", takes=("part", "speed", "platforms"))
+_KIND = partial(
+    ExportKind,
+    suffixes=(".fmu",),
+    requires="a C compiler",
+    takes=("inputs", "outputs", "linear", "part", "speed", "platforms"),
+)
 FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=_make_2)
 FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=_make_3)

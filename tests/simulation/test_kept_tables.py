@@ -49,3 +49,9 @@ def test_writing_to_a_result_changes_no_other():
     expected = first.time.copy()
     np.asarray(first.time)[...] = 0.0
     assert np.array_equal(run(signal).time, expected)
+
+
+def test_the_table_of_a_half_car_of_ten_seconds_is_kept():
+    signal = it.multisine(ROAD, seed=6)
+    given = ((signal, signal, None, None), (0.0, 0.08, 0.0, 0.0), 10.0, 2e-4)
+    assert inputs.tabulate_once(*given) is inputs.tabulate_once(*given)

@@ -27,7 +27,7 @@ Matrix = NDArray[np.float64]
 _SAME = 1e-9  # of a step: knots that differ by less are one
 MEMORY_LIMIT = 4 * 2**30
 _LARGEST = 1e100
-_KEPT = 100_000  # largest number of steps times inputs of a table that is kept
+_KEPT = 400_000  # largest number of steps times inputs of a table that is kept: 7 MB
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,6 +11,7 @@ import pytest
 import scipy.signal
 import scipy.stats
 from campaigns import sampled
+from uneven import OneSidedStop
 from wang_su import J1, J3, ROAD, paper_half_car, paper_quarter_car
 
 import inerter as it
@@ -254,6 +255,16 @@ def test_play_that_rattles_on_has_a_value_of_its_own(index):
     rattling = it.evaluate(paper_quarter_car(wide), index, replace(TWO, period=10))
     assert rattling.status.kind == "inaccurate"
     assert "nothing is added" in rattling.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("element", "words"),
+    [(OneSidedStop(2e-3, "bump"), "stop 'bump' in 'strut'"), (Gap(2e-3, "g"), "gap 'g' in 'strut'")],
+)
+def test_a_note_names_the_element_that_no_damper_represents(element, words):
+    car = paper_quarter_car(Spring(80e3) | Damper(100.0) | element - Spring(3e5))
+    estimate = it.evaluate(car, J1, replace(TWO, period=10))
+    assert estimate.notes[0].startswith(f"no damper represents {words}: added above 1000 Hz ")
 
 
 @pytest.mark.campaign

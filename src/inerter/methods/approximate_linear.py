@@ -53,7 +53,7 @@ _STEPPED = 1e-4  # relative error of gains by the cubics between four points of 
 _UNSETTLED = 20.0  # times the change of the state over a period that gains may be off by
 _LOST = 1e-2  # of a mean square that may hide between the harmonics, beyond which nothing is known
 _UNLIKE = "no equivalent linear model: the gains are used alone, up to the highest excited frequency"
-_LOOSE = "the gains are used alone; above the highest excited frequency gaps count as closed"
+_LOOSE = "the gains are used alone; above the highest excited frequency that of the linear model, with closed gaps"
 _HELD = "the noise is held: the gains at the instants of its samples are used alone"
 _MOST = 1000  # realisations
 

@@ -14,10 +14,12 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import ErrorSource, LinearSystemError, MechanismError
+from inerter.formatting import format_list
 from inerter.indices.definition import IndexDefinition
 from inerter.methods.equivalent import Equivalent, equivalent, slipping_freely
 from inerter.methods.equivalent_damper import GAUSSIAN
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
+from inerter.networks.elements import Element
 from inerter.norms.h2 import h2
 from inerter.norms.response import frequency_response
 from inerter.norms.stability import balance
@@ -27,7 +29,7 @@ from inerter.systems.linear import LinearSystem
 from inerter.systems.output_filters import with_output_filters
 from inerter.systems.outputs import Output, of_mount
 from inerter.systems.piecewise import PiecewiseSystem
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
 _STUCK = 1e6  # times a typical damper is as good as stuck: more would only cost digits
@@ -54,9 +56,17 @@ def has_play(system: PiecewiseSystem) -> bool:
 
 def travels_with_play(system: PiecewiseSystem) -> tuple[str, ...]:
     """Names of the travels of mounts with an element that switches and that no damper represents, as a gap."""
+    return tuple(of_mount(mount)[1] for mount in system.mechanism.mounts() if _without_damper(mount))
+
+
+def format_elements_with_play(system: PiecewiseSystem) -> str:
+    """Elements that switch and that no damper represents, such as `gap 'g' in 'strut'`."""
     mounts = system.mechanism.mounts()
-    loose = (mount for mount in mounts if any(e.acts and not e.is_damped for e in mount.network.elements()))
-    return tuple(of_mount(mount)[1] for mount in loose)
+    return format_list([f"{e.key} {e.label!r} in {mount.name!r}" for mount in mounts for e in _without_damper(mount)])
+
+
+def _without_damper(mount: Strut | Tyre) -> list[Element]:
+    return [element for element in mount.network.elements() if element.acts and not element.is_damped]
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,7 @@ from inerter.methods.equivalent_linear import (
     EquivalentLinearModel,
     equivalent_linear_model,
     few_lines,
+    format_elements_with_play,
     has_play,
     lower_peaks,
     modal_shares,
@@ -58,14 +59,13 @@ _MOST_BEYOND = 0.1  # of a mean square that may be added for the road outside th
 _UNSEEN = 5e-4  # of a mean square that lines may miss without a longer road
 _LOST = 1e-2  # the same, beyond which nothing is known
 _MOST_PEAKED = 0.01  # of a mean square, without a longer road ...
-_MOST_PEAKED_BY_PLAY = 0.015  # ... with backlash, where the roads needed for this are slow
+_MOST_PEAKED_BY_PLAY = 0.015  # ... with gaps and such, where the roads needed for this are slow
 _IMAGES = 6  # of each line, on either side, that samples cannot tell from it
 _SMOOTH = 500  # lines whose images are computed
 _IMAGES_WITHIN = 1e-8  # of the largest response to images, which are a per cent of any line, or less
 _ROUNDING = 1e-12  # of the mean square of an index, within which an output is at rest
 _COARSE = 1e-2  # how well what knots of the road take from a mean square is known
-_UNLIKE = "no equivalent linear model of backlash: nothing is added for the road outside 0.1 to 1000 Hz"
-_LOOSE = "no equivalent linear model of backlash: above 1000 Hz gaps count as closed, below 0.1 Hz nothing is added"
+_UNLIKE = "no equivalent linear model: nothing is added for the road outside 0.1 to 1000 Hz"
 _STEPPED = 2e-6  # relative error of a value by the time step
 _PEAKS = 4.0  # the largest of a random motion over its r.m.s. value
 _FEW = 3  # periods after which a motion with play must repeat, or the period is too short to stand for a long road
@@ -75,7 +75,8 @@ _FEW = 3  # periods after which a motion with play must repeat, or the period is
 class OnRoads:
     """A design and a question, on roads of one length.
 
-    `frictions` names the velocities across its frictions, `play` the travels of mounts with backlash.
+    `frictions` names the velocities across its frictions, `play` the travels of mounts with an element that no damper
+    represents, such as a gap.
     """
 
     system: PiecewiseSystem
@@ -169,7 +170,7 @@ def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun]
 
 
 def _peaked_by_play(design: OnRoads, found: Sequence[RoadRun], higher: Sequence[RoadRun]) -> float:
-    """Share of a mean square by which it may be off with backlash, as lines have lower peaks than a random road.
+    """Share of a mean square by which it may be off, as lines have lower peaks than a random road, with gaps and such.
 
     No linear model tells which resonance a gap changes, nor how wide that is: the change of the response is that of
     the motion on roads twice as high, and the lines are those over which the travel spreads on the roads themselves.
@@ -241,7 +242,7 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     if design.play and unseen > _UNSEEN:
         above = design.definition.drive.amplitude_density**2 * squares_above(system, float(lines.omega[-1]))
         share = max(share, float(np.max(above / np.maximum(power[:count], 1e-300))))
-        return OutOfBandContribution(above, unseen, beyond=share, peaked=peaked, notes=(_LOOSE,))
+        return OutOfBandContribution(above, unseen, beyond=share, peaked=peaked, notes=(_loose_note(design.system),))
     if unseen > _LOST:
         return OutOfBandContribution(
             np.full(count, np.nan), unseen, share, peaked, within_reach, _almost_undamped(pole, design.longest)
@@ -251,6 +252,14 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOf
     status = OK if share <= _MOST_BEYOND else _mostly_beyond(share)
     measured = road_errors(design.definition, system, pade_order, norms)
     return OutOfBandContribution(added, unseen, share * unlike, peaked, within_reach, status, measured=measured)
+
+
+def _loose_note(system: PiecewiseSystem) -> str:
+    """Note on the elements that no damper represents, which the equivalent linear model takes as the linear one."""
+    return (
+        f"no damper represents {format_elements_with_play(system)}: added above 1000 Hz is the response of the linear "
+        "model, with closed gaps; below 0.1 Hz nothing is added"
+    )
 
 
 def _left_over(found: Sequence[RoadRun]) -> float:

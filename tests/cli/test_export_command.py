@@ -206,6 +206,7 @@ def test_friction_is_refused_in_a_sentence(folder: Path, capsys: pytest.CaptureF
         (["car.toml", "--to", "Simulink", "--index", "J1"], "svg, pdf, latex, simulation. Try: --to fmu"),
         (["car.toml", "--to", "matlba", "--index", "J1"], 'Did you mean "matlab"?'),
         (["car.toml", "--to", "control", "--index", "J1"], "is an object of Python"),
+        *((["car.toml"], f"\n  {kind.key} ") for kind in it.EXPORTS.values() if kind.is_file),
         (["car.toml", "--to", "matlab", "--index", "J1", "-o", "car.txt"], "suffix .mat or .m."),
         (["car.toml", "--to", "matlab", "--index", "J1", "-o", "none/car.mat"], "folder not found"),
         (["nothing.toml", "--to", "matlab"], "nothing.toml"),

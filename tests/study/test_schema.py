@@ -18,6 +18,7 @@ from jsonschema import Draft202012Validator
 from inerter.cli.main import call
 from inerter.errors import StudyError, UnitError
 from inerter.files.common.entries import LOWER, UPPER
+from inerter.files.common.kinds import kind_of, kinds
 from inerter.files.common.schema import UNIT, USUAL, quantity_schema
 from inerter.files.common.toml import as_toml
 from inerter.files.study import KIND
@@ -47,11 +48,24 @@ def leaves(value: object, place: tuple = ()) -> list[tuple]:
     return list(chain.from_iterable(leaves(one, (*place, key)) for key, one in value.items()))
 
 
-def test_it_is_a_schema_and_takes_every_example():
-    Draft202012Validator.check_schema(SCHEMA)
-    assert len(STUDIES) >= 4
-    for path in STUDIES:
-        assert [error.message for error in EDITOR.iter_errors(tables(path))] == [], path.name
+def test_it_is_a_schema_and_takes_every_example(capsys):
+    """The printed schema of each kind of files takes the examples of its kind, and those of no other kind."""
+    examples = [(path.name, tables(path)) for path in sorted(EXAMPLES.glob("*.toml"))]
+    assert len({kind_of(table) for _, table in examples}) >= 3
+    for kind in kinds():
+        assert call(["schema", kind.name]) == 0
+        schema = json.loads(capsys.readouterr().out)
+        Draft202012Validator.check_schema(schema)
+        editor = Draft202012Validator(schema)
+        for name, table in examples:
+            assert editor.is_valid(table) == (kind_of(table) is kind), (kind.name, name)
+
+
+def test_the_schema_of_an_unknown_kind_is_refused(capsys):
+    assert call(["schema", "simulate"]) == 2
+    *_, said = capsys.readouterr().err.strip().splitlines()
+    known = "available: study, identification, rig, simulation."
+    assert said.endswith(f'Unknown kind of file "simulate"; {known} Did you mean "simulation"?')
 
 
 PLAIN = {LOWER, UPPER, *Columns.__annotations__, "distance", "height"}  # in tables whose key tells all of them

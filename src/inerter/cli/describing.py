@@ -10,6 +10,7 @@ from typing import Any
 
 from inerter.errors import StudyError
 from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of_files
+from inerter.files.common.kinds import kinds
 from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.study import KIND
@@ -27,9 +28,16 @@ _PLACE, _UNIT = 32, 11  # columns of the table of keys
 _NAMES = {"layouts": "S3"}  # of an example, by its section; elsewhere that of an element
 
 
-def schema() -> None:
-    """Print the JSON Schema of study files."""
-    print(json.dumps(KIND.schema(), indent=2, ensure_ascii=False))
+def schema(name: str) -> None:
+    """Print the JSON Schema of a kind of files.
+
+    Raises `StudyError` for an unknown kind.
+    """
+    known = {kind.name: kind for kind in kinds()}
+    if name not in known:
+        available = ", ".join(known)
+        raise StudyError(f"Unknown kind of file {quote_value(name)}; available: {available}.{nearest(name, known)}")
+    print(json.dumps(known[name].schema(), indent=2, ensure_ascii=False))
 
 
 def explain(wanted: str | None) -> None:

@@ -25,7 +25,7 @@ _OPENED_BY = {"simulink": "fmu", "octave": "matlab", "openmodelica": "modelica",
 
 def export(
     source: Path,
-    to: str,
+    to: str | None,
     layout: str | None,
     index: str | None,
     point: int | None,
@@ -54,7 +54,7 @@ def export(
         indices = {design.case.index: design.index}
         request = ExportSpec(
             design.vehicle(),
-            to,
+            kind.key,
             **options,
             speed=delayed,
             indices=indices if "indices" in kind.takes else None,
@@ -69,11 +69,14 @@ def export(
         say(f"{WITHOUT_CONDITIONS}; {CHOOSE_ONE}")
 
 
-def _kind(name: str) -> ExportKind:
-    """The kind of export; raises `ExportError` for an unknown one, with those that are written to files."""
+def _kind(name: str | None) -> ExportKind:
+    """The kind of export; raises `ExportError` for none or an unknown one, with those that are written to files."""
+    files = {key: kind for key, kind in EXPORTS.items() if kind.is_file}
+    if name is None:
+        lines = (f"  {key:<{max(map(len, files))}}  {kind.description}" for key, kind in files.items())
+        raise ExportError("\n".join(["--to is missing; kinds of exports:", *lines]))
     if name in EXPORTS:
         return EXPORTS[name]
-    files = [key for key, kind in EXPORTS.items() if kind.is_file]
     opened = _OPENED_BY.get(name.lower())
     hint = nearest(name, files) if opened is None else f" Try: --to {opened}"
     raise ExportError(f"Unknown kind of export {quote_value(name)}; available: {', '.join(files)}.{hint}")

@@ -218,16 +218,25 @@ def explain(key: str | None = None, /) -> None:
     command(key)
 
 
-@app.command(help_epilogue="Example: inerter schema > study.schema.json")
-def schema() -> None:
-    """Print the JSON Schema of study files, with which editors complete and check them.
+@app.command(
+    help_epilogue="""Examples:
+  inerter schema > study.schema.json
+  inerter schema simulation > simulation.schema.json"""
+)
+def schema(kind: str = "study", /) -> None:
+    """Print the JSON Schema of a kind of files, with which editors complete and check them.
 
     An editor that knows TOML (those with Taplo do) reads it where the first line
     of a study file is  #:schema ./study.schema.json
+
+    Parameters
+    ----------
+    kind
+        Kind of files: study, simulation, rig or identification.
     """
     from inerter.cli.describing import schema as command
 
-    command()
+    command(kind)
 
 
 @app.command(
@@ -346,8 +355,8 @@ def export(
     /,
     *,
     to: Annotated[
-        str, Parameter(help="Kind: matlab, csv, netcdf, modelica, fmu, fmu3, spice, svg, pdf, latex, simulation.")
-    ],
+        str | None, Parameter(help="Kind of export, such as matlab, modelica or fmu; without it, all kinds are listed.")
+    ] = None,
     layout: Annotated[str | None, Parameter(help="Layout; optional if there is only one.")] = None,
     index: BestFor = None,
     point: SweepPoint = None,

@@ -35,6 +35,11 @@ class FileKind:
     usage: str = "{file}"  # what follows the command, where {file} is the path of a file
 
     @property
+    def name(self) -> str:
+        """Name of the kind in one word, that of its folder."""
+        return self.folder.rpartition(".")[2]
+
+    @property
     def singular(self) -> str:
         """Name of one file of the kind."""
         return self.plural.removesuffix("s")

@@ -154,7 +154,7 @@ def export_csv(
     header: Sequence[str],
     rows: Iterable[Sequence[float | str]],
     *,
-    overwrite: bool = False,
+    overwrite: bool,
 ) -> None:
     """Write a table whose numbers read back to the last bit; see `export`."""
     with export(path, kind, overwrite=overwrite) as draft, draft.open("w", newline="", encoding="utf-8") as file:

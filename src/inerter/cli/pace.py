@@ -42,7 +42,7 @@ class Pace:
     last: float = 0.0
 
     @classmethod
-    def of_networks(cls, further: str = "") -> Pace:
+    def of_networks(cls, further: str) -> Pace:
         """Estimator of the remaining time of a search over networks, after which `further` work follows."""
         layout, index = NETWORKS
         return cls({layout: 1}, (index,), 0, further=further)

@@ -16,7 +16,7 @@ from inerter.cli.progress import progress
 
 @contextmanager
 def study_work(
-    command: Sequence[str], folder: Path, options: WorkOptions, items: str, pace: Pace | None = None
+    command: Sequence[str], folder: Path, options: WorkOptions, items: str, pace: Pace | None
 ) -> Iterator[dict[str, Any]]:
     """Arguments of the function that works on a study: processes, what becomes of results, and callbacks."""
     own, kept = options.processes, options.continuation_clause(command, folder)

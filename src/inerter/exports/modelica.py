@@ -53,7 +53,7 @@ def _make(request: ExportSpec, suffix: str) -> str:
     return "".join([*(f"// {note}\n" for note in notes), modelica_source(mechanism, request.title)])
 
 
-def modelica_source(mechanism: Mechanism, title: str = "") -> str:
+def modelica_source(mechanism: Mechanism, title: str) -> str:
     """A package with the model `Vehicle`, whose inputs are velocities of roads and forces."""
     return _Source(mechanism).text(title or "vehicle")
 

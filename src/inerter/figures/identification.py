@@ -188,8 +188,8 @@ def residual_figure(time: Matrix, residual: Matrix, lags: Matrix, correlation: M
     return figure
 
 
-def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: Matrix | None = None) -> Figure:
-    """Force [N] over displacement [m] and over velocity [m/s], measured and, where it is given, of a model."""
+def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: Matrix) -> Figure:
+    """Force [N] over displacement [m] and over velocity [m/s], measured and of a model."""
     with style_context():
         figure, axes = new_figure(2, 2, height=2.6)
         up = choose_scale([np.abs(force).max()], "N")
@@ -197,14 +197,11 @@ def loops_figure(displacement: Matrix, velocity: Matrix, force: Matrix, model: M
             axes, (displacement, velocity), ("Displacement", "Velocity"), ("m", "m/s"), strict=True
         ):
             own = choose_scale([np.abs(along).max()], unit)
-            style = {**_MEASURED, "linewidth": 0.7} if model is None else {**_BELOW, "linewidth": 1.9}
-            ax.plot(along * own.factor, force * up.factor, **style, label="measured")
-            if model is not None:
-                ax.plot(along * own.factor, model * up.factor, **{**_ABOVE, "linewidth": 0.7}, label="model")
+            ax.plot(along * own.factor, force * up.factor, **{**_BELOW, "linewidth": 1.9}, label="measured")
+            ax.plot(along * own.factor, model * up.factor, **{**_ABOVE, "linewidth": 0.7}, label="model")
             ax.xaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 5, 10]))
             ax.set(xlabel=axis_label(name, own.unit), ylabel=axis_label("Force", up.unit))
-        if model is not None:
-            add_legend(figure, axes)
+        add_legend(figure, axes)
     return figure
 
 

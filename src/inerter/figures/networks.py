@@ -96,7 +96,8 @@ def network_figure(networks: Mapping[str, Network], *, values: bool = False) -> 
     """
     if not networks:
         raise NetworkError("A figure of networks needs at least one, got none.")
-    cells = [_Cell(_plain(title), schematic(network, values=values)) for title, network in networks.items()]
+    plain = {title.replace("$", r"\$"): network for title, network in networks.items()}  # a dollar begins no formula
+    cells = [_Cell(title, schematic(network, values=values)) for title, network in plain.items()]
     rows = list(_rows(cells, 72.0 * WIDE - 2.0 * _MARGIN))
     widths, heights = [_row_width(row) for row in rows], [max(cell.height for cell in row) for row in rows]
     y = _MARGIN + sum(heights) + _ROW * (len(rows) - 1)
@@ -244,8 +245,3 @@ def draw_schematic(drawing: Schematic, axes: Axes, at: Point) -> Axes:
         strokes += [translate_line(line, one.x, one.y) for line in one.element.drawing]
         write(axes, one.label, one.x + HALF_WIDTH + TO_LABEL, one.y, ha="left")
     return stroke(strokes, axes)
-
-
-def _plain(title: str) -> str:
-    """Text in which a dollar begins no formula."""
-    return title.replace("$", r"\$")

@@ -49,7 +49,7 @@ _MODAL = 1e-10  # of the largest gain by which a sum over modes may be off
 _EPS = float(np.finfo(float).eps)
 
 
-def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | None = None) -> tuple[Array, Array]:
+def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | None) -> tuple[Array, Array]:
     """Corrections of the squared norms of the outputs of `system` for true densities, and their uncertainties.
 
     `excesses` has the functions of the sources that have one; the system has the filters that stand in for them.

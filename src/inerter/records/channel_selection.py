@@ -6,6 +6,7 @@ import difflib
 import re
 import unicodedata
 from collections.abc import Collection, Mapping, Sequence
+from operator import attrgetter
 from typing import Any, TypedDict
 
 from inerter.errors import RecordError
@@ -121,7 +122,7 @@ def channel_by_name(source: str, channels: Sequence[Channel], role: str, given: 
         )
     if not isinstance(given, str):
         raise RecordError(f"{role} must be the name or the number of a channel, got {given!r}.")
-    for key in (_full_name, _short_name, _folded_name, _folded_short):
+    for key in (attrgetter("name"), _short_name, _folded_name, _folded_short):
         matches = [channel for channel in channels if key(channel) == key(Channel(given, short=given))]
         if len(matches) == 1:
             return matches[0]
@@ -202,10 +203,6 @@ def channel_example(channels: Sequence[Channel], role: str) -> Remedy:
     """Example of naming the channel of a role: the first one with a unit of that role."""
     likely = (channel.name for channel in channels if is_unit_of_role(role, channel.unit))
     return Remedy(Action.CHANNEL, (role, next(likely, "name")))
-
-
-def _full_name(channel: Channel) -> str:
-    return channel.name
 
 
 def _short_name(channel: Channel) -> str:

@@ -9,7 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Progress = Callable[[float], None]
+Progress = Callable[[float], None]  # called with the fraction that was read
+
+
+def ignore_progress(fraction: float) -> None:
+    """A `Progress` that does nothing."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from inerter.formatting import format_quantity
 from inerter.records import matlab, mdf, tables, tdms
 from inerter.records.channel_selection import Roles, channel_example, checked_roles, select_channels
 from inerter.records.channel_units import check_present, check_units, is_unit_of_role, scale
-from inerter.records.channels import Channel, Contents, Progress, Samples
+from inerter.records.channels import Channel, Contents, Progress, Samples, ignore_progress
 from inerter.records.dropouts import fill_dropouts
 from inerter.records.gaps import fill_missing, have_same_times, resample_onto_force
 from inerter.records.prepare import with_missing_times
@@ -93,7 +93,7 @@ def read_record(
     with opener(name, source) as contents:
         chosen, said = select_channels(source, contents, asked, timed=interval is not None)
         scales, notes = _scales(source, chosen, units, asked)
-        samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or _ignore_progress), strict=True))
+        samples = dict(zip(chosen, contents.read(list(chosen.values()), progress or ignore_progress), strict=True))
     channels = {role: _to_si_units(source, chosen[role], samples[role], scales[role]) for role in chosen}
     channels, more = _with_times(contents, source, chosen, channels, interval)
     channels, filled_in, filled = fill_missing(source, channels, gaps)
@@ -113,10 +113,6 @@ def read_record(
         meta=meta,
     )
     return fill_dropouts(with_missing_times(record, gaps), gaps)
-
-
-def _ignore_progress(fraction: float) -> None:
-    pass
 
 
 def _checked_path(path: str | os.PathLike[str]) -> str:

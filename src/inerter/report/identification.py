@@ -61,9 +61,7 @@ def write_fit(found: IdentificationResult, folder: Path) -> None:
     write_residuals(found, folder / RESIDUALS)
 
 
-def write_identification(
-    found: IdentificationResult, folder: Path, progress: Callable[[float], None] = lambda done: None
-) -> None:
+def write_identification(found: IdentificationResult, folder: Path, progress: Callable[[float], None]) -> None:
     """Write the frequency responses, the figures (SVG), and a page that shows all of it, into `folder`."""
     answered = responses(found)
     write_text(folder / RESPONSE, json.dumps(response_data(answered), indent=2) + "\n")

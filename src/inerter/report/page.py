@@ -156,7 +156,7 @@ def breakable(name: str) -> Markup:
     return Markup("<wbr>").join(re.split(r"(?<=[-_.+])(?=.)", name))
 
 
-def inline(svg: str, name: str, caption: str, *, natural: bool = False) -> Markup:
+def inline(svg: str, name: str, caption: str, *, natural: bool) -> Markup:
     """An SVG file as an element of a page: names are made unique by `name`, and the page decides on the size unless it
     is to have its `natural` one.
     """

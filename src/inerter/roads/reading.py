@@ -18,7 +18,7 @@ from inerter.errors import RecordError, SignalError, UnitError
 from inerter.formatting import format_quantity, format_range
 from inerter.records import tables
 from inerter.records.channel_selection import fold_name
-from inerter.records.channels import Channel, Contents
+from inerter.records.channels import Channel, Contents, ignore_progress
 from inerter.records.optional_readers import library, reraise_read_errors
 from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
@@ -168,11 +168,7 @@ def _read_table(
 
 
 def _read(contents: Contents, channels: list[Channel]) -> list[Matrix]:
-    return [np.asarray(samples.values, dtype=float) for samples in contents.read(channels, _ignore_progress)]
-
-
-def _ignore_progress(fraction: float) -> None:
-    pass
+    return [np.asarray(samples.values, dtype=float) for samples in contents.read(channels, ignore_progress)]
 
 
 def _select_columns(

@@ -96,9 +96,7 @@ class Histories:
     stop: Stop
 
 
-def step_through(
-    mechanism: Mechanism, graph: Graph, table: StepTable, start: Start | Stop, every: int = 1
-) -> Histories:
+def step_through(mechanism: Mechanism, graph: Graph, table: StepTable, start: Start | Stop, every: int) -> Histories:
     """Integrate with one step for each interval of `table`, and keep every `every`-th instant, the first one included.
 
     It goes on where another march over the same mechanism ended, if that is the start. `graph` is

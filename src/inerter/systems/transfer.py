@@ -38,7 +38,7 @@ def transfer_functions(
     inputs: Sequence[str],
     asked: Sequence[Output],
     *,
-    reduced: bool = True,
+    reduced: bool,
 ) -> TransferFunctions:
     """Transfer functions from road velocities and forces `inputs` to the outputs `asked`, at these free `values`.
 

@@ -135,7 +135,7 @@ def _number(name: str, value: float | Free) -> float:
     return value
 
 
-def neglected_scatter(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str] = ()) -> list[str]:
+def neglected_scatter(vehicle: Vehicle, method: Method, scatter: Scatter, idle: Collection[str]) -> list[str]:
     """Names of values with tolerances that the method neglects, as linear analysis does.
 
     `idle` names values without effect: with friction neglected, elements without force have none.

@@ -45,12 +45,8 @@ class FmiVersion:
 FMI_2, FMI_3 = FmiVersion(2, "fmi2.c"), FmiVersion(3, "fmi3.c")
 
 
-def _make_2(request: ExportSpec, suffix: str) -> bytes:
-    return fmu_archive(_system(request), request.title, FMI_2, request.platforms)
-
-
-def _make_3(request: ExportSpec, suffix: str) -> bytes:
-    return fmu_archive(_system(request), request.title, FMI_3, request.platforms)
+def _make(version: FmiVersion, request: ExportSpec, suffix: str) -> bytes:
+    return fmu_archive(_system(request), request.title, version, request.platforms)
 
 
 def _system(request: ExportSpec) -> SwitchingSystem:
@@ -91,7 +87,7 @@ def _is_nonlinear(mechanism: Mechanism) -> bool:
     return any(element.switch is not None for element in switching(mechanism).elements())
 
 
-def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion, platforms: Sequence[str] = ()) -> bytes:
+def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion, platforms: Sequence[str]) -> bytes:
     """An FMU of a linear or a switching system, with libraries for this machine and for other platforms.
 
     Raises as `libraries`.
@@ -199,5 +195,5 @@ _KIND = partial(
     requires="a C compiler",
     takes=("inputs", "outputs", "linear", "part", "speed", "platforms"),
 )
-FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=_make_2)
-FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=_make_3)
+FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=partial(_make, FMI_2))
+FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=partial(_make, FMI_3))

@@ -28,15 +28,18 @@ def plot_network(networks: Network | Mapping[str, Network], *, values: bool = Fa
         return network_figure(named, values=values)
 
 
-def network_svg(network: Network) -> str:
-    """Drawing of a network as SVG, as notebooks show it."""
-    return _svg(network)
+def network_svg(networks: Network | Mapping[str, Network]) -> str:
+    """Drawing of a network, or of several below their names, as SVG, as notebooks show it."""
+    drawn = StringIO()
+    with style_context():
+        plot_network(networks, values=True).savefig(drawn, format="svg", metadata={"Date": None})
+    return drawn.getvalue()
 
 
 def design_svg(design: Vehicle) -> str | None:
     """Drawing of the struts of a design as SVG, as notebooks show it; None if it has none."""
     struts = {strut.name: strut.network for strut in design.mechanism().struts}
-    return _svg(networks_by_title(struts)) if struts else None
+    return network_svg(networks_by_title(struts)) if struts else None
 
 
 def networks_by_title(networks: Mapping[str, Network]) -> dict[str, Network]:
@@ -45,10 +48,3 @@ def networks_by_title(networks: Mapping[str, Network]) -> dict[str, Network]:
     for name, network in networks.items():
         together.setdefault(network, []).append(name.replace("_", " "))
     return {"" if len(together) == 1 else ", ".join(names): network for network, names in together.items()}
-
-
-def _svg(networks: Network | Mapping[str, Network]) -> str:
-    drawn = StringIO()
-    with style_context():
-        plot_network(networks, values=True).savefig(drawn, format="svg", metadata={"Date": None})
-    return drawn.getvalue()

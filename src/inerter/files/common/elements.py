@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any, ClassVar
 
 from inerter.files.common.codec import INVALID, Codec, KeyPath, LoadContext, RawEntry, TableCodec, section
@@ -203,12 +204,13 @@ def _with_name(element: Element, name: str) -> Element:
 
 def _kinds_codec(free: bool) -> TaggedCodec:
     """The tables of elements that name their kind; the value may be `free`."""
-    check = one_of("a kind of element", ELEMENTS)
-    return TaggedCodec(KIND, lambda: {k: _kind_table(one, free) for k, one in ELEMENTS.items()}, check, _key, "spring")
-
-
-def _key(element: Element) -> str:
-    return element.key
+    return TaggedCodec(
+        KIND,
+        lambda: {kind: _kind_table(element, free) for kind, element in ELEMENTS.items()},
+        one_of("a kind of element", ELEMENTS),
+        attrgetter("key"),
+        "spring",
+    )
 
 
 def _kind_table(kind: type[Element], free: bool) -> TableCodec:

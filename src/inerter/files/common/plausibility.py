@@ -29,7 +29,7 @@ def is_on_road(model: str) -> bool:
     return model in VEHICLES and VEHICLES[model].moved == "road"
 
 
-def road_sentence(road: Road, speed: str = "") -> str:
+def road_sentence(road: Road, speed: str) -> str:
     """Class of a road and, if given, the vehicle `speed`, as a sentence."""
     return f"Road: {class_words(road)}{f', at {speed}' if speed else ''}."
 

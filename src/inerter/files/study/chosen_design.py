@@ -83,7 +83,7 @@ class ChosenDesign:
 
 
 def chosen_design(
-    source: Path, layout: str | None, index: str | None, point: int | None, condition: str | None = None
+    source: Path, layout: str | None, index: str | None, point: int | None, condition: str | None
 ) -> ChosenDesign:
     """The design of a layout of a study file, or of a folder of results; the best one for an index if values are free.
 
@@ -95,7 +95,7 @@ def chosen_design(
 
 
 def chosen_designs(
-    source: Path, layouts: Sequence[str], index: str | None, point: int | None, condition: str | None = None
+    source: Path, layouts: Sequence[str], index: str | None, point: int | None, condition: str | None
 ) -> dict[str, ChosenDesign]:
     """The designs of some layouts by their names, all without `layouts`, as `chosen_design` has one."""
     study = _load(source)

@@ -229,7 +229,7 @@ def _as_force(given: str, units: Iterable[str]) -> str:
 
 
 def _as_acceleration(given: str, unit: str) -> str:
-    """What `given` means as an acceleration ("gravity" for "g"), if `unit` is of one; else empty."""
+    """Unit of acceleration meant by `given` ("gravity" for "g") where `unit` is one of acceleration; else empty."""
     meant = _ACCELERATIONS.get(given, "")
     return meant if meant and _have_same_dimension(meant, unit) else ""
 

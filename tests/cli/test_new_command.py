@@ -11,12 +11,12 @@ from inerter.field_metadata import fields_of
 from inerter.files.study import KIND
 from inerter.files.study.checking import check_study
 from inerter.files.study.loading import load_study
-from inerter.files.study.sections import judged_models
+from inerter.files.study.sections import study_models
 from inerter.files.study.starting import starting_text
 from inerter.vehicle.registry import VEHICLES
 
 
-@pytest.mark.parametrize("model", judged_models())
+@pytest.mark.parametrize("model", study_models())
 def test_a_start_for_every_vehicle(model, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert call(["new", model]) == 0

@@ -13,7 +13,7 @@ from inerter.identification.intervals import best_fit_of
 from inerter.identification.noise import uniform_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.problem import FitProblem
-from inerter.identification.search import basin_hopping, search, starts
+from inerter.identification.search import basin_hopping, search, starting_points
 from inerter.identification.sensors import periodic_displacement, unavoidable_residual
 
 FLYWHEEL = it.Inerter(it.free(10, 500, name="b")) | it.Friction(it.free(0, 200, name="f"))
@@ -75,7 +75,7 @@ def test_part_of_a_record_is_part_of_what_its_force_tells() -> None:
 
 def test_starts_cover_orders_of_magnitude_of_what_may_be_zero() -> None:
     problem = problem_of(fit_test(), BALL_SCREW)
-    gaps = np.array([problem.space.values_by_name(p)["gap"] for p in starts(problem, {}, seed=0, count=128)])
+    gaps = np.array([problem.space.values_by_name(p)["gap"] for p in starting_points(problem, {}, seed=0, count=128)])
     assert np.mean(gaps < 1e-5) > 0.1
     assert np.mean(gaps > 3e-4) > 0.1
 

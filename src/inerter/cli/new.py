@@ -7,7 +7,7 @@ from pathlib import Path
 from inerter.atomic_io import write_text
 from inerter.cli.streams import say
 from inerter.errors import StudyError
-from inerter.files.study.sections import judged_models
+from inerter.files.study.sections import study_models
 from inerter.files.study.starting import starting_text
 
 _STDOUT = Path("-")
@@ -19,7 +19,7 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
     Raises `StudyError` for an unknown vehicle, or where a file is there already that `force` may not replace: it
     replaces what this command has written, as it was written.
     """
-    vehicle = vehicle or judged_models()[0]
+    vehicle = vehicle or study_models()[0]
     path = output or Path(f"{vehicle}.toml")
     text = starting_text(vehicle, "STUDY.toml" if path == _STDOUT else path.name)
     if path == _STDOUT:
@@ -47,7 +47,7 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
 def _check_own(path: Path) -> None:
     """Raises `StudyError` unless the file is one that this command writes, unchanged."""
     present = path.read_bytes() if path.is_file() else b""
-    if all(present != starting_text(model, path.name).encode("utf-8") for model in judged_models()):
+    if all(present != starting_text(model, path.name).encode("utf-8") for model in study_models()):
         raise StudyError(
             f"{path}: edited since inerter new wrote it, and not replaced. Choose another with -o FILE, or remove it "
             "first."

@@ -46,7 +46,7 @@ class Improvement:
 
 
 def percent_below(value: float, base: float) -> float:
-    """How far a value lies below that of the baseline [%]; nan where they cannot be compared."""
+    """Reduction of a value relative to that of the baseline [%]; nan where they cannot be compared."""
     return 100.0 * (1.0 - value / base) if isfinite(value) and isfinite(base) and base else nan
 
 

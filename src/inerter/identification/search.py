@@ -44,15 +44,15 @@ def search(
 
     `guess`: initial estimates, each with the half-width of its search range.
     """
-    candidates = starts(problem, guess, seed, points)
+    candidates = starting_points(problem, guess, seed, points)
     first = replace(problem, horizon=stages[0][0])
     work = [stages[0][0] * len(candidates) / 8, *(share * kept * runs for share, kept, runs in stages)]
     done = [float(d) for d in np.cumsum(work) / sum(work)]
-    hear = counter("starting points", len(candidates), part(progress, 0.0, done[0]))
+    tell = counter("starting points", len(candidates), part(progress, 0.0, done[0]))
     costs = []
     for residual in over_threads(first.residual, candidates):
         costs.append(robust_sum(residual))
-        hear(len(costs) / len(candidates))
+        tell(len(costs) / len(candidates))
     halfway: list[float] = []
     for stage, (horizon, kept, evaluations) in enumerate(stages):
         shorter = replace(problem, horizon=horizon)
@@ -60,8 +60,8 @@ def search(
         candidates = distinct(candidates, costs)[:kept]
         what = f"search on {'all' if horizon == 1.0 else format_share(horizon)} of the information"
         tasks = [(shorter, candidate) for candidate in candidates]
-        hear = counter(what, len(tasks), part(progress, done[stage], done[stage + 1]))
-        found = map_problems(partial(_improve_candidate, evaluations, accuracy), tasks, progress=hear)
+        tell = counter(what, len(tasks), part(progress, done[stage], done[stage + 1]))
+        found = map_problems(partial(_improve_candidate, evaluations, accuracy), tasks, progress=tell)
         candidates, costs = [f[0] for f in found], [f[1] for f in found]
         halfway = sorted(costs) if horizon < 1.0 else halfway
     return candidates[int(np.argmin(costs))], halfway
@@ -81,7 +81,9 @@ def distinct(candidates: list[Matrix], costs: list[float]) -> list[Matrix]:
     return result
 
 
-def starts(problem: FitProblem, guess: Mapping[str, tuple[float, float]], seed: int, count: int) -> list[Matrix]:
+def starting_points(
+    problem: FitProblem, guess: Mapping[str, tuple[float, float]], seed: int, count: int
+) -> list[Matrix]:
     """Points of a Sobol' sequence: three quarters of them around the guess, if there is one, and some without backlash.
 
     A value that may be zero is drawn as the cube of a uniform one, because its order of magnitude is unknown.

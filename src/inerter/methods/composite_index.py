@@ -37,7 +37,7 @@ class CompositeIndex(DescribedIndex, Protocol):
     """Composed index: combines several indices, or computes its value without a method."""
 
     def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
-        """Constituent indices, each with its vehicle; raises `InerterError` if the vehicle has no answer."""
+        """Constituent indices, each with its vehicle; raises `InerterError` if there are none for it."""
         ...
 
     def per_output(self, split: Callable[[Any, Vehicle], Sequence[Any]], vehicle: Vehicle) -> Sequence[CompositeIndex]:
@@ -80,9 +80,9 @@ def estimate_of(vehicle: Vehicle, index: IndexLike, method: Method) -> Estimate:
 
 def estimates_of(vehicle: Vehicle, indices: Sequence[IndexLike], method: Method, points: Mapping[str, Array]) -> Array:
     """The indices (designs, indices) of a vehicle at many values of its free values."""
-    loose = without_tied_values(vehicle)
-    if loose is not None:
-        return _estimates_untied(loose, indices, method, points)
+    untied = without_tied_values(vehicle)
+    if untied is not None:
+        return _estimates_untied(untied, indices, method, points)
     plain = [index for index in indices if not is_composite(index)]
     together = method.estimate_many(vehicle, plain, points) if plain else np.empty((0, 0))
     columns = iter(together.T)
@@ -93,10 +93,10 @@ def estimates_of(vehicle: Vehicle, indices: Sequence[IndexLike], method: Method,
 
 def objective_of(vehicle: Vehicle, index: IndexLike, method: Method) -> Objective:
     """The index as a function of the free values."""
-    loose = without_tied_values(vehicle)
-    if loose is not None:
+    untied = without_tied_values(vehicle)
+    if untied is not None:
         return combine_objectives(
-            [ObjectivePart(objective_of(loose.vehicle, index, method), loose.follow)], worst=False
+            [ObjectivePart(objective_of(untied.vehicle, index, method), untied.ties)], worst=False
         )
     return index.as_objective(vehicle, method) if is_composite(index) else method.objective(vehicle, index)
 
@@ -126,13 +126,13 @@ class UntiedDesign:
     """Design whose tied values are design variables, and the map that gives them."""
 
     vehicle: Vehicle
-    follow: Ties
+    ties: Ties
 
 
 def without_tied_values(vehicle: Vehicle) -> UntiedDesign | None:
     """Design with design variables in place of tied values, and their map; None if there are no tied values.
 
-    What they lie between is half to twice the value in the middle of what they follow from.
+    Their bounds are half and twice the value that they have in the middle of the bounds of the design variables.
     """
     if not any(isinstance(element.value, Tied) for part in mounted_elements(vehicle) for element in part):
         return None
@@ -152,19 +152,19 @@ def without_tied_values(vehicle: Vehicle) -> UntiedDesign | None:
             like, element.label, **{field.name: getattr(element, field.name) for field in element.more}
         )
 
-    loose = with_elements(vehicle, free_element)
-    inner = tuple(found.get(name, Tied((name,))) for name in loose.free_values())
-    return UntiedDesign(loose, Ties(tuple(free), inner))
+    untied = with_elements(vehicle, free_element)
+    inner = tuple(found.get(name, Tied((name,))) for name in untied.free_values())
+    return UntiedDesign(untied, Ties(tuple(free), inner))
 
 
 def _estimates_untied(
-    loose: UntiedDesign, indices: Sequence[IndexLike], method: Method, points: Mapping[str, Array]
+    untied: UntiedDesign, indices: Sequence[IndexLike], method: Method, points: Mapping[str, Array]
 ) -> Array:
-    rows = np.column_stack([points[name] for name in loose.follow.names])
-    inner = loose.follow.values(rows)
+    rows = np.column_stack([points[name] for name in untied.ties.names])
+    inner = untied.ties.values(rows)
     good = np.all((inner > 0.0) & np.isfinite(inner), axis=1)
     result = np.full((rows.shape[0], len(indices)), np.nan)
     if good.any():
-        values = dict(zip(loose.vehicle.free_values(), inner[good].T, strict=True))
-        result[good] = estimates_of(loose.vehicle, indices, method, values)
+        values = dict(zip(untied.vehicle.free_values(), inner[good].T, strict=True))
+        result[good] = estimates_of(untied.vehicle, indices, method, values)
     return result

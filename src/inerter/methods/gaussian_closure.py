@@ -196,7 +196,7 @@ class Pattern:
 
     @cached_property
     def beside(self) -> NDArray[np.bool_]:
-        """Which outputs of the index are forces in the mount of which friction (outputs, frictions)."""
+        """Whether an output of the index is the force of the mount that has a friction (outputs, frictions)."""
         outputs, mechanism = self.index.problem.unfiltered.outputs, self.parts.mechanism
         found = np.zeros((len(outputs), len(self.parts.dampers)), dtype=bool)
         for mount in mechanism.mounts():
@@ -265,7 +265,7 @@ class Pattern:
         return self.index.problem.definition.combine(norms, self.index.problem.weights)
 
     def spread(self, norms: Sequence[Array]) -> Array:
-        """How far the index (designs,) can move if each output moves over its norms (several, designs, outputs)."""
+        """Range of the index (designs,) over the norms of its outputs (several, designs, outputs)."""
         return self.combine(np.max(norms, axis=0)) - self.combine(np.min(norms, axis=0))
 
     def value_and_gradient(self, definition: CompiledNorm, row: Array) -> tuple[float, Array]:

@@ -234,7 +234,7 @@ class _AdmittanceIndex:
 
 
 def _powers(p: Array) -> tuple[slice, Array]:
-    """Where the coefficients lie without zeros at both ends, and these from the constant upwards; one zero for zero."""
+    """Slice of the coefficients without zeros at both ends, and these from the constant upwards; one zero for zero."""
     kept = np.flatnonzero(p)
     if kept.size == 0:
         return slice(len(p) - 1, len(p)), np.zeros(1)

@@ -214,7 +214,7 @@ def _zobel_forms(group: Tree) -> Iterator[Tree]:
 
 @dataclass(frozen=True)
 class _Rule:
-    """How like arms of a bridge are replaced: values of the new elements, and a factor of those of the other arms."""
+    """Replacement of equal arms of a bridge: values of the new elements, and a factor of those of the other arms."""
 
     convert: Callable[..., tuple[Sequence[Decimal], Decimal]]
     invert: Callable[..., tuple[Sequence[Decimal], Decimal]]

@@ -312,7 +312,7 @@ class _Elimination:
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """Where the entries of a symmetric (n, n) matrix are among its different ones, those on and above the diagonal."""
+    """Positions of the entries of a symmetric (n, n) matrix among those on and above the diagonal."""
 
     upper: NDArray[np.intp]  # (m,) of the whole matrix, flat
     both: NDArray[np.intp]  # (n, n) of the different ones

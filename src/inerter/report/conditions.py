@@ -75,7 +75,7 @@ def swept_condition_sentences(results: xr.Dataset) -> Iterator[str]:
 
 
 def _is_worse(design: xr.Dataset) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Where a design is worse than the baseline by more than its errors."""
+    """Whether a design is worse than the baseline by more than its errors, over the dimensions of `design`."""
     errors = design["improvement_error"].fillna(0.0) if "improvement_error" in design else 0.0
     return np.asarray((design["improvement"] + 2.0 * errors <= -NOTICEABLE).values)
 

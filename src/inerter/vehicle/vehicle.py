@@ -65,7 +65,7 @@ class VehicleModel:
     key: ClassVar[str]
     moved: ClassVar[str] = "road"  # default input of a signal: this, a force, or "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
-    question: ClassVar[str] = ""  # that an example of it answers, on a first screen
+    question: ClassVar[str] = ""  # answered by its example on a first screen
 
     _repr_svg_ = shown_by("inerter.figures.plots.network:design_svg")
 
@@ -103,7 +103,7 @@ class VehicleModel:
 
 
 def _remember_last(build: Callable[[Any], Mechanism]) -> Callable[[Any], Mechanism]:
-    """The method that builds the mechanism of a frozen vehicle, which several questions in a row ask for."""
+    """`build` that keeps the last mechanism it made, since analyses of a vehicle need it several times in a row."""
     last: tuple[object, Mechanism] | None = None
 
     @wraps(build)
@@ -166,7 +166,7 @@ def name_free_quantities(of: Any, what: str) -> None:
 def check_free_quantities(of: VehicleModel | Stage) -> None:
     """Raises `DesignError` if a free quantity has the name of another one or of an element, also below a stage.
 
-    Who wants one value of both gives both a name of their own.
+    To make both one value, give both free values the same name of your own.
     """
     parts: list[Vehicle] = [of]
     while isinstance(part := parts[-1], Stage):
@@ -187,7 +187,7 @@ def check_free_quantities(of: VehicleModel | Stage) -> None:
 
 
 def _given_networks(part: Vehicle) -> Iterable[Network]:
-    """The networks that a vehicle or a stage was given, without those that stand for its quantities."""
+    """Networks of the mounts of a vehicle or stage, without the elements of its own quantities."""
     if isinstance(part, VehicleModel):
         return part.networks().values()
     return [part.network] if isinstance(part, Stage) else (mount.network for mount in part.mechanism().mounts())

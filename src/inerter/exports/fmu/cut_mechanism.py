@@ -138,7 +138,7 @@ class CutMechanism:
         return found
 
     def _elongation(self, number: int, rows: Rows, equations: Equations | None) -> Matrix:
-        """Of a spring: its force over its value, which in a stack is the slice of that value."""
+        """Elongation of a spring: its force over its stiffness, which `equations` has as a parameter."""
         force, element = rows[self.carried[number]], self.graph.branches[number].element
         if equations is None:
             return force / element.coefficient

@@ -1,4 +1,4 @@
-"""The keys of a file that say how the table of a measured profile is read, where the table does not say it itself."""
+"""Keys of a file for the table of a measured profile: columns, units and spacing that its header does not state."""
 
 from __future__ import annotations
 

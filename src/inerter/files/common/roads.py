@@ -1,4 +1,4 @@
-"""The section [road] of a file: its keys, and what stands for a measured profile and for two tracks that differ."""
+"""Section [road] of a file: its keys, the spectrum fitted to a measured profile, and the coherence of two tracks."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _LEVELS = Scalar(_from_minus_one, lambda: {"type": "number", "minimum": -1, "max
 
 @keyed_dataclass
 class CoherenceTable:
-    """How alike left and right track are: as on an isotropic surface, everywhere alike, or of first order."""
+    """Coherence between left and right track: of an isotropic surface, constant over frequency, or of first order."""
 
     track: float | None = key(
         QuantityCodec("m", if_given=True),
@@ -97,7 +97,7 @@ COHERENCE = table_of(CoherenceTable, make=without_none, check=_of_one_form, abou
 
 @keyed_dataclass
 class RoadSource:
-    """Source of a roughness that the file does not say: a class, or a measured profile."""
+    """Source of the roughness where the file states none: a road class, or a measured profile."""
 
     letter: str | None = key(
         word("a class of ISO 8608", ROAD_CLASSES),
@@ -163,7 +163,7 @@ def _rough_in_one_way(table: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def road_codec(*, rough: bool = True) -> TableCodec:
-    """The section [road], as a dictionary of its values; not all that drive on one need its roughness (`rough`)."""
+    """The section [road], as a dictionary of its values; with `rough` it must state a roughness or a source of it."""
     speed, roughness, *others = map(declaration_of, ROAD_QUANTITIES)
     roughness = replace(roughness, implied=_OTHER_SOURCES, default=REQUIRED if rough else None)
     return TableCodec(
@@ -258,7 +258,7 @@ class MeasuredLine:
 def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[MeasuredLine | None, list[Problem]]:
     """Line of waviness 2 fitted to the measured profile of a road, None without a profile, and its problems.
 
-    The file is looked for beside that at `beside`.
+    The path of the profile is relative to the folder of the file at `beside`.
     """
     if road is None or road["profile"] is None:
         return None, []
@@ -323,13 +323,13 @@ def without_source(values: Mapping[str, Any], line: MeasuredLine | None) -> dict
 
 
 def road_of(values: Mapping[str, Any], shape: RoadShape | None = None) -> Road:
-    """The road of the values of a section [road]; one that was measured has a `shape`."""
+    """The road of a section [road] with these values; a measured road has a `shape`."""
     own = {field.name: values[field.key] for field in ROAD_QUANTITIES}
     return Road(**own, coherence=_coherence_of(values["coherence"]), shape=shape)
 
 
 def road_values(road: Road, coherence: Mapping[str, float]) -> dict[str, Any]:
-    """The values of a section [road] that says this road, whose coherence has these values."""
+    """The values of the section [road] of a road, with those of its coherence."""
     return {**{field.key: getattr(road, field.name) for field in ROAD_QUANTITIES}, "coherence": coherence or None}
 
 

@@ -222,7 +222,7 @@ class RoadPlace:
 
 @keyed_dataclass
 class MeasureTable:
-    """Which outputs answer the questions of indices."""
+    """Performance outputs of indices, with their weights."""
 
     comfort: Mapping[str, float] = key(
         _OUTPUTS,

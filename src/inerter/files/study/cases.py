@@ -179,7 +179,7 @@ def _prefix(study: Study, method: str) -> str:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _BestDesign:
     """Vehicle of a case with its best values, the search that found them, and the limits that it was subject to."""
 
     vehicle: Vehicle
@@ -218,27 +218,27 @@ def _run(whole: Study, case: Case, threads: int) -> Outcome:
     )
 
 
-def _best_design(study: Study, case: Case, threads: int) -> _Found:
+def _best_design(study: Study, case: Case, threads: int) -> _BestDesign:
     """The design of a case with the lowest index within the limits; as it stands where nothing is to be optimised."""
     design = study.design(case.layout)
     vehicle = design if study.conditions else design.mechanism()  # whose numbers conditions change
     if study.optimise is None:
-        return _Found(vehicle)
+        return _BestDesign(vehicle)
     method, limits = study.method(study.optimise, threads), all_limits(study, case.layout)
     if vehicle.free_values():
         index = study.resolve_index(case.index, case.layout)
         with within("search", 0.0, _SEARCHED):
             found = optimise(vehicle, index, method, subject_to=limits, seed=study.seed)
         results = list(map(list, limit_results(study, case.layout, vehicle, found.limits)))
-        return _Found(found.design, found, results, (found.status,))
+        return _BestDesign(found.design, found, results, (found.status,))
     if not limits:
-        return _Found(vehicle)
+        return _BestDesign(vehicle)
     held = constraints_at(vehicle, limits, method)
     results = list(map(list, limit_results(study, case.layout, vehicle, held)))
-    return _Found(vehicle, None, results, (broken(held), *(one.estimate.status for one in held)))
+    return _BestDesign(vehicle, None, results, (broken(held), *(one.estimate.status for one in held)))
 
 
-def _estimates(study: Study, case: Case, best: _Found, threads: int) -> dict[str, dict[str, Estimate]]:
+def _estimates(study: Study, case: Case, best: _BestDesign, threads: int) -> dict[str, dict[str, Estimate]]:
     """Value of each index of the study for a design, by each method that evaluates it.
 
     Where there are several methods, one that fails leaves the others their values.
@@ -290,7 +290,9 @@ def _notes(study: Study, vehicle: Vehicle, own: Mapping[str, Estimate]) -> list[
     return list(map(list, dict.fromkeys(notes)))
 
 
-def _controls(study: Study, case: Case, best: _Found, method: str, estimate: Estimate, threads: int) -> list[float]:
+def _controls(
+    study: Study, case: Case, best: _BestDesign, method: str, estimate: Estimate, threads: int
+) -> list[float]:
     """Control variates of an estimate of the case's own index; empty if there are none."""
     simulated, count = study.method(method, threads), estimate.realisations
     if not isinstance(simulated, AveragingMethod) or not 0 < count <= _MOST_SAMPLES:

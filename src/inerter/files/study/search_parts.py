@@ -168,7 +168,7 @@ class RealPart(StudyPart["RealResult"]):
         )
 
     def _baseline(self, study: Study, designs: Designs, method: Method) -> RealResult:
-        """The baseline at the best values by the method; what has no friction or backlash has those of the study."""
+        """The baseline at its best values by the method; one without friction and backlash has those of the study."""
         layout = str(study.baseline)
         index, design = study.resolve_index(self.index, layout), study.design(layout)
         if self.method != study.optimise and design.free_values() and linear_notes(design.mechanism()):

@@ -24,7 +24,7 @@ RANKED = 10  # networks in a ranking for people
 
 
 def improvement(value: float, reference: float) -> float:
-    """How far a value is below a reference, in per cent of it; nan where that has no meaning."""
+    """Reduction of a value relative to a reference [%]; nan where that has no meaning."""
     if not (isfinite(value) and isfinite(reference)) or reference == 0.0:
         return nan
     return 100.0 * (reference - value) / abs(reference)

@@ -85,7 +85,7 @@ class SweepRange:
 
 @keyed_dataclass
 class ConditionEntry:
-    """Numbers by their places, and how much of the time they are so."""
+    """Operating condition: numbers that differ from those of the file, by key path, and its share of the time."""
 
     share: float = key(
         POSITIVE, "Share of the operating time, relative to the other conditions.", "share = 0.3", default=1.0
@@ -124,18 +124,18 @@ def _renamed_key(key: str, names: Mapping[str, str]) -> str:
 
 
 class ConditionCodec(TableCodec):
-    """The table of a condition, whose other keys are places."""
+    """The table of a condition, whose other keys are key paths."""
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
-        """The table with other names of elements in its places."""
+        """The table with other names of elements in its key paths."""
         return rename_places(raw, names, keys=self.names)
 
 
 class PlacesCodec(ByPlaceCodec):
-    """A table by places, among them those of elements."""
+    """A table by key paths, some of them of elements."""
 
     def rename(self, raw: Any, names: Mapping[str, str]) -> Any:
-        """The table with other names of elements in its places."""
+        """The table with other names of elements in its key paths."""
         return rename_places(raw, names, entries=self.entries)
 
 
@@ -153,7 +153,7 @@ _VALUES = EitherCodec(table_of(SweepRange, about=SweepRange.__doc__), SWEEP_LIST
 
 @dataclass(frozen=True)
 class SweepsCodec(PlacesCodec):
-    """The values that numbers of the file take, by their places."""
+    """Swept values of numbers of the file, by key path."""
 
     item: Codec = _VALUES
     entries: bool = True
@@ -163,19 +163,19 @@ class SweepsCodec(PlacesCodec):
         return {sweep.label: [f"{one!r} {sweep.unit}" for one in sweep.values] for sweep in value}
 
 
-def judged_models() -> list[str]:
-    """The models that are judged, on a road or under a force."""
+def study_models() -> list[str]:
+    """Vehicle models of study files: all but test rigs, whose displacement is prescribed."""
     return [model for model in models() if model not in VEHICLES or VEHICLES[model].moved != "displacement"]
 
 
-def _car(value: Any) -> str:
-    cars = tuple(judged_models())
-    if isinstance(value, str) and value in VEHICLES and value not in cars:
+def _study_model(value: Any) -> str:
+    known = tuple(study_models())
+    if isinstance(value, str) and value in VEHICLES and value not in known:
         raise ValueError(
-            f"Got {quote_value(value)}, which has no road; expected {' or '.join(map(quote_value, cars))}. "
+            f"Got {quote_value(value)}, which has no road; expected {' or '.join(map(quote_value, known))}. "
             f"A {value.replace('-', ' ')} is for: inerter simulate."
         )
-    return one_of("a vehicle model", cars)(value)
+    return one_of("a vehicle model", known)(value)
 
 
 def _search(value: Any) -> str:
@@ -187,7 +187,7 @@ _INDICES = SomeOfFile("an index", indices_of)
 
 
 def _scatter(given: Any) -> float:
-    """A part of a value: a number, or text with a per cent sign."""
+    """Relative tolerance: a number, or text with a per cent sign."""
     number = given
     if isinstance(given, str) and given.rstrip().endswith("%"):
         try:
@@ -388,12 +388,12 @@ def study_codec() -> TableCodec:
         before=_of_a_trade_off,
         about=str(Settings.__doc__),
     )
-    *others, last = map(quote_value, judged_models())
+    *others, last = map(quote_value, study_models())
     keys = (
         section("title", TEXT, "Title of reports; the name of the file if left out.", 'title = "My car"', None),
         section(
             "vehicle",
-            vehicle_codec(judged_models(), _car, free=True),
+            vehicle_codec(study_models(), _study_model, free=True),
             "Vehicle model; it determines the other keys of this section.",
             f"a section [vehicle] with model = {', '.join(others)} or {last}",
         ),

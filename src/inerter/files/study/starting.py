@@ -14,7 +14,7 @@ from inerter.files.common.suggest import nearest
 from inerter.files.common.toml import as_line
 from inerter.files.common.vehicle_tables import MECHANISM
 from inerter.files.study import KIND
-from inerter.files.study.sections import judged_models
+from inerter.files.study.sections import study_models
 from inerter.indices.registry import INDICES, make_index
 from inerter.methods.registry import DEFAULT
 from inerter.networks.elements import Damper, Inerter, Network, Spring
@@ -68,9 +68,9 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
 
     Raises `StudyError` for a vehicle that study files do not know.
     """
-    if model not in judged_models():
-        hint = nearest(model, judged_models()) or " It is for: inerter simulate." * (model in VEHICLES)
-        known = " or ".join(map(quote_value, judged_models()))
+    if model not in study_models():
+        hint = nearest(model, study_models()) or " It is for: inerter simulate." * (model in VEHICLES)
+        known = " or ".join(map(quote_value, study_models()))
         raise StudyError(f"unknown vehicle {quote_value(model)} in study files; expected {known}.{hint}")
     kind = _Quarter if model == MECHANISM else VEHICLES[model]
     car = model.replace("-", " ")

@@ -46,12 +46,12 @@ class Study(Settings):
     title: str
     path: Path = field(compare=False)
     vehicle: dict[str, Any]  # the table, with its model
-    road: Road | None  # of indices that are asked on one
+    road: Road | None  # None if no index needs one
     elements: dict[str, Element]  # a free element's value is named after its key, so that it is one in all layouts
     layouts: dict[str, StrutLayout]
     coherence: dict[str, float] = field(default_factory=dict)  # of the road, as the file says it
-    line: MeasuredLine | None = field(default=None, compare=False)  # that the roughness is of, if it was measured
-    tasks: dict[str, Any] = field(default_factory=dict)  # what is said of those with keys of their own, by their keys
+    line: MeasuredLine | None = field(default=None, compare=False)  # fitted to a measured profile
+    tasks: dict[str, Any] = field(default_factory=dict)  # settings of the tasks that have keys of their own, by task
     settings: dict[str, float] = field(default_factory=dict)  # of indices, by their keys, in SI units
     conditions: tuple[StudyCondition, ...] = ()  # over which indices are taken
     texts: tuple[str, ...] = field(default=(), compare=False, repr=False)  # of the file, which may be quantities
@@ -105,7 +105,7 @@ class Study(Settings):
 
     @cached_property
     def _made_indices(self) -> dict[str, Index]:
-        """Indices that were made already: a page takes each of them many times for a design."""
+        """Indices by name, as far as they were needed: a page needs each many times for a design."""
         return {}
 
     def _make_index(self, name: str) -> Index:
@@ -217,7 +217,7 @@ class Study(Settings):
 
     @cached_property
     def _made_designs(self) -> dict[str, Vehicle]:
-        """Designs that were made already: checks, results and reports ask for each many times."""
+        """Designs by layout, as far as they were needed: checks, results and reports need each many times."""
         return {}
 
     @cached_property

@@ -46,7 +46,7 @@ def isolated_line(record: Record, motion: Motion) -> SpectralLine | None:
     resolution = 1.0 / (values.size * record.interval)
     first = math.ceil(1.2 * motion.highest / resolution) + _WIDTH
     candidates = np.arange(first, amplitude.size - _WIDTH)
-    multiples = _multiples(record, motion, resolution, amplitude.size)
+    multiples = _multiples(record, motion, amplitude.size)
     for at in candidates[np.argsort(-amplitude[candidates])][:8]:
         low, high = max(int(at / 2), first - _WIDTH), min(2 * int(at), amplitude.size)
         nearby = np.r_[low : at - _WIDTH, at + _WIDTH + 1 : high]
@@ -65,7 +65,7 @@ def _frequency(amplitude: Vector, at: int) -> float:
     return at + 0.5 * float((a - c) / (a - 2.0 * b + c)) if a - 2.0 * b + c < 0.0 else float(at)
 
 
-def _multiples(record: Record, motion: Motion, resolution: float, size: int) -> NDArray[np.bool_]:
+def _multiples(record: Record, motion: Motion, size: int) -> NDArray[np.bool_]:
     """Spectral lines near a multiple of the motion's period, or of one of its strongest tones."""
     values = motion.displacement[:_MANY] - float(np.mean(motion.displacement[:_MANY]))
     spectrum = np.abs(np.fft.rfft(get_window("hann", values.size) * values))

@@ -118,7 +118,7 @@ def _layout(source: str, head: bytes) -> TableLayout:
         raw = raw[:-1]  # may be cut short
     if not b"".join(raw).strip() and len(head) < HEAD:
         raise RecordError(f"{source}: empty file; expected a header with names and units, and rows of numbers.")
-    lines, encoding = _decode(source, head, raw)
+    lines, encoding = _decode(source, raw)
     for at, line in enumerate(lines):
         delimiters = [delimiter for delimiter in _DELIMITERS if _divides(lines[at : at + 3], delimiter)]
         if delimiters:  # prefer one that leaves only numbers
@@ -135,7 +135,7 @@ def _layout(source: str, head: bytes) -> TableLayout:
     )
 
 
-def _decode(source: str, head: bytes, raw: list[bytes]) -> tuple[list[str], str]:
+def _decode(source: str, raw: list[bytes]) -> tuple[list[str], str]:
     try:
         return [line.decode("utf-8") for line in raw], "utf-8"
     except UnicodeDecodeError:

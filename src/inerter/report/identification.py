@@ -128,7 +128,7 @@ def _records(found: IdentificationResult) -> Iterator[RecordText]:
         yield RecordText(
             reading.used.source,
             sampling_summary(reading),
-            list(processing_notes(found, reading, comparison)),
+            list(processing_notes(reading, comparison)),
             {
                 _HEADINGS[severity]: [as_options(finding.text) for finding in group]
                 for severity, group in by_severity(reading.findings).items()

@@ -90,7 +90,7 @@ def sampling_summary(reading: Reading) -> str:
     return f"{record.time.size} samples over {duration} s at {rate} Hz"
 
 
-def processing_notes(found: IdentificationResult, reading: Reading, comparison: RecordFit) -> Iterator[str]:
+def processing_notes(reading: Reading, comparison: RecordFit) -> Iterator[str]:
     """Sentences on the processing of a record."""
     yield from reading.used.notes
     yield from comparison.record.notes[len(reading.used.notes) :]
@@ -110,7 +110,7 @@ def _record_lines(found: IdentificationResult) -> Iterator[str]:
     yield "Records"
     for reading, comparison in zip(found.readings, found.fit.comparisons, strict=True):
         yield from wrap(f"  {reading.used.source}: {sampling_summary(reading)}", WIDTH, subsequent_indent="    ")
-        for sentence in processing_notes(found, reading, comparison):
+        for sentence in processing_notes(reading, comparison):
             yield from wrap(sentence, WIDTH, initial_indent="    ", subsequent_indent="    ")
         for warning in by_severity(reading.findings).get(Severity.WARNING, ()):
             said = f"Warning: {as_options(warning.text)}"

@@ -36,13 +36,12 @@ def _table(results: xr.Dataset, index: str) -> Table:
     limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
     rows = []
     for name in layouts(results):
-        described = _describe_swept_limit if swept else _describe_limit
         for limit in limits:
-            contents = described(_entry(results, name, index, limit), index)
+            entry = _entry(results, name, index, limit)
+            contents = _describe_swept_limit(entry) if swept else _describe_limit(entry, index)
             rows.append(Row(cells(name, str(results["limit.words"].sel(limit=limit).item()), *contents)))
         if swept:
-            entry = _entry(results, name, index)
-            rows.append(Row(cells(name, "all limits", *_describe_infeasible(entry))))
+            rows.append(Row(cells(name, "all limits", *_describe_infeasible(_entry(results, name, index)))))
     caption = f"Limits of the designs that are best for {index_words(results, index)}"
     if basis := results["limit_value"].attrs["basis"]:
         caption = f"{caption}; values {basis}"
@@ -74,7 +73,7 @@ def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
     return content, f"raising it by 1 % changes {index} by {format_share(cost / 100.0, 2, '+')}"
 
 
-def _describe_swept_limit(entry: xr.Dataset, index: str) -> tuple[str, str]:
+def _describe_swept_limit(entry: xr.Dataset) -> tuple[str, str]:
     """At how many swept values a limit is active, and where."""
     return _where(entry, entry["limit_active"].values & ~_is_infeasible(entry)) or ("nowhere", "")
 

@@ -26,6 +26,7 @@ from inerter.norms.hinf import GainPeak
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008 import between, beyond, curves, rows
 from inerter.papers.wang_su_2008.claims import judge
+from inerter.papers.wang_su_2008.items import PaperItem, work
 from inerter.papers.wang_su_2008.judging import (
     Claim,
     ClaimPart,
@@ -42,7 +43,7 @@ from inerter.papers.wang_su_2008.origins import origins
 from inerter.papers.wang_su_2008.over_stiffness import Curves
 from inerter.papers.wang_su_2008.report.reasons import reason
 from inerter.papers.wang_su_2008.report.text import reproduction_text
-from inerter.papers.wang_su_2008.reproduce import JOURNAL, PaperItem, Reproduction, work
+from inerter.papers.wang_su_2008.reproduce import JOURNAL, Reproduction
 from inerter.papers.wang_su_2008.rig import IdentifiedParameter, RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import simulated_rows, study

@@ -87,7 +87,7 @@ def test_short_work_is_not_worth_a_process() -> None:
 def test_processes_stay_for_the_next_list_and_end_with_the_crew() -> None:
     with Pool(2) as pool:
         pool.begin(os.getpid)
-        assert len(active_children()) == 1  # as many as there is work for
+        assert len(active_children()) == 2  # they start at once, for the work that follows
         assert sorted(pool.spread(abs, range(-50, 0))) == list(range(1, 51))
         there = {child.pid for child in active_children()}
         assert len(there) == 2

@@ -78,7 +78,7 @@ class InputTable:
         if parts == 1:
             return self
         time = np.append((self.time[:-1, None] + np.diff(self.time)[:, None] * np.arange(parts) / parts), self.time[-1])
-        value, slope = (_within_segments(self, parts, derivative) for derivative in (0, 1))
+        value, slope = _within_segments(self, parts)
         slot = np.full(time.size, -1, np.int64)
         slot[::parts] = self.slot
         return replace(
@@ -94,18 +94,19 @@ class InputTable:
         )
 
 
-def _within_segments(table: InputTable, parts: int, derivative: int) -> Matrix:
-    """Values, or slopes, of all inputs from the right at the ends of `parts` equal pieces of every segment."""
-    length, s = np.diff(table.time)[:, None, None], (np.arange(parts) / parts)[:, None]
-    first, rise = table.value[:-1, None], (table.value_before[1:] - table.value[:-1])[:, None]
-    begin, end = length * table.slope[:-1, None], length * table.slope_before[1:, None]
+def _within_segments(table: InputTable, parts: int) -> tuple[Matrix, Matrix]:
+    """Values and slopes of all inputs from the right at the ends of `parts` equal pieces of every segment."""
+    length = np.diff(table.time)[:, None]
+    first, rise = table.value[:-1], table.value_before[1:] - table.value[:-1]
+    begin, end = length * table.slope[:-1], length * table.slope_before[1:]
     bent, turned = 3.0 * rise - 2.0 * begin - end, begin + end - 2.0 * rise
-    if derivative == 0:
-        found = first + s * (begin + s * (bent + s * turned))
-    else:
-        found = (begin + s * (2.0 * bent + s * 3.0 * turned)) / length
-    last = (table.value, table.slope)[derivative][-1:]
-    return np.concatenate([found.reshape(-1, last.shape[1]), last])
+    value, slope = (np.empty((length.size * parts + 1, first.shape[1])) for _ in range(2))
+    value[-1], slope[-1] = table.value[-1], table.slope[-1]
+    for number in range(parts):  # of long columns, whose pieces are few
+        s = number / parts
+        value[number:-1:parts] = first + s * (begin + s * (bent + s * turned))
+        slope[number:-1:parts] = (begin + s * (2.0 * bent + s * 3.0 * turned)) / length
+    return value, slope
 
 
 def _from_the_left_too(before: Matrix, after: Matrix, found: Matrix, parts: int) -> Matrix:

@@ -70,8 +70,9 @@ class Pool:
             yield near
 
     def begin(self, work: Callable[[], object]) -> None:
-        """Run a call first in one of the worker processes, ignoring its result."""
+        """Start all worker processes at once, and run a call first in one of them, ignoring its result."""
         if self._given is None and self.jobs > 1:
+            is_started(self._processes().start(os.getpid), wait=True)
             self._processes().submit(work)
 
     def on_each_node(self, function: Callable[..., object], *args: object) -> bool:

@@ -6,7 +6,7 @@ Processes, executors, the journal, progress and exit codes know parts and result
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from inerter.errors import InerterError, StatusKind
 from inerter.work.blas_threads import one_blas_thread
+from inerter.work.checkpoints import Row, resuming
 from inerter.work.pool import KILLS
 from inerter.work.progress import report, within
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
 FAILURES = (InerterError, np.linalg.LinAlgError, ArithmeticError, ValueError)  # the last: scipy's, of inf and nan
+KnownSearches = Mapping[str, Sequence[Row]]  # of parts that have not ended, by the names of those
 ENDED = f"{KILLS} processes ended, or had no memory left, while they worked on it"
 
 
@@ -102,6 +104,18 @@ def run_part(study: Study, designs: Mapping[Case, Outcome], part: StudyPart[Resu
             return part.compute(study, designs, threads)
     except FAILURES as error:
         return part.failed_result(study, str(error))
+
+
+def resume_part(
+    study: Study,
+    designs: Mapping[Case, Outcome],
+    known: KnownSearches,
+    part: StudyPart[ResultT],
+    threads: int = 1,
+) -> ResultT:
+    """The result of a part, whose searches go on from what is known of them."""
+    with resuming(part.name, known):
+        return run_part(study, designs, part, threads)
 
 
 def lost_part(study: Study, part: StudyPart[ResultT]) -> ResultT:

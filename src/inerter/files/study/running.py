@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, ope
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Outcome, portable
 from inerter.files.study.checking import check_study, kernels
-from inerter.files.study.parts import PartResult, StudyPart, lost_part, run_part
+from inerter.files.study.parts import KnownSearches, PartResult, StudyPart, lost_part, resume_part
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import DatasetBuilder
 from inerter.files.study.study import Study
@@ -32,14 +32,13 @@ from inerter.files.study.tasks import Answer, Designs, TaskResults, by_task, jou
 from inerter.formatting import format_list
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.table import csv_rows, csv_text
-from inerter.work.checkpoints import Checkpoint, Row, join_checkpoints, resuming, storing_checkpoints
+from inerter.work.checkpoints import Checkpoint, join_checkpoints, storing_checkpoints
 from inerter.work.journal import Journal
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
-_Known = Mapping[str, Sequence[Row]]  # searches of parts that have not ended, by the names of those
 _Done = dict[StudyPart[Any], Answer]
 Progress = Callable[[int, int, PartResult | None, int], None]
 
@@ -227,7 +226,7 @@ def _compute_outcomes(
     return found, done, len(pending)
 
 
-def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, _Known]:
+def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, KnownSearches]:
     """Enter the outcomes of a journal; returns its answers, and the states of unfinished searches."""
     done: _Done = {}
     searches: dict[str, list[Checkpoint]] = {}
@@ -249,19 +248,11 @@ def _enter(result: PartResult, found: DatasetBuilder, done: _Done) -> None:
 
 
 def part_results(
-    study: Study, designs: Designs, pending: Iterable[StudyPart[Any]], pool: Pool, known: _Known
+    study: Study, designs: Designs, pending: Iterable[StudyPart[Any]], pool: Pool, known: KnownSearches
 ) -> Iterator[list[PartResult]]:
     """Lists of results of parts, in the order in which they are completed; searches begun go on from what is known."""
-    run = partial(_resumed_result, portable(study), designs, known)
+    run = partial(resume_part, portable(study), designs, known)
     return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, portable(study)))
-
-
-def _resumed_result(
-    study: Study, designs: Designs, known: _Known, part: StudyPart[Any], threads: int = 1
-) -> PartResult:
-    with resuming(part.name, known):
-        result: PartResult = run_part(study, designs, part, threads)
-    return result
 
 
 def _prepare(pool: Pool, study: Study, compiling: ProgressCallback | None) -> None:

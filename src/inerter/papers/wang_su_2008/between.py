@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.optimize
-import xarray as xr
 
 from inerter.methods.norm import Norm
 from inerter.optimisation.optimise import optimise
 from inerter.papers.wang_su_2008.source import study
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WORSE = 1e-4  # two optima that differ by less, relatively, are equally good: no figure shows it
 _PLACE = 55e3  # [N/m] near which the paper finds an elastic S3 worse than S1

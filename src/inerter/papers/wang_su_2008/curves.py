@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from inerter.methods.approximate_linear import ApproximateLinear
 from inerter.methods.method import evaluate
 from inerter.methods.norm import Norm
 from inerter.papers.wang_su_2008.rows import total_error
 from inerter.papers.wang_su_2008.source import index_of, study
+
+if TYPE_CHECKING:
+    import xarray
 
 LAYOUTS = {
     "figure13": ("S2-10N", "S2-20N", "S3-10N", "S3-20N"),
@@ -53,12 +55,14 @@ def compute(name: str, optima: dict[str, float]) -> dict[str, object]:
     }
 
 
-def dataset(found: dict[str, dict[str, Any]], figure11: xr.Dataset) -> xr.Dataset:
+def dataset(found: dict[str, dict[str, Any]], figure11: xarray.Dataset) -> xarray.Dataset:
     """Dataset of the curves and those of Figure 11: value, standard error, improvement over S1, status.
 
     `deviation` holds what each realisation adds to the mean, and `unsampled_error` what of the standard error does not
     come from them; both are zero for linear designs.
     """
+    import xarray as xr  # noqa: PLC0415 - heavy
+
     layouts = list(dict.fromkeys(name.split()[0] for name in found))
     base = figure11["value"].sel(layout="S1")
     shape = (len(layouts), figure11.sizes["index"], figure11.sizes["k"])

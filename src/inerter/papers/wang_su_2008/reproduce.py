@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import xarray as xr
 
 from inerter.errors import StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study.running import StudyResult, result_names, run_study
+from inerter.kernels.cache import is_kept
 from inerter.kernels.prepare import prepare
 from inerter.papers.wang_su_2008 import agreement, between, beyond, curves, linear, rig, rows
 from inerter.papers.wang_su_2008.claims import judge
+from inerter.papers.wang_su_2008.items import Numbers, PaperItem, work
 from inerter.papers.wang_su_2008.judging import Claim, Evidence
 from inerter.papers.wang_su_2008.linear import LinearTables
 from inerter.papers.wang_su_2008.paper import PAPER, PARTS
@@ -24,7 +24,6 @@ from inerter.papers.wang_su_2008.rig import RigTest
 from inerter.papers.wang_su_2008.rows import SimulatedRow
 from inerter.papers.wang_su_2008.source import study
 from inerter.simulation.event_driven import KERNELS
-from inerter.work.blas_threads import one_blas_thread
 from inerter.work.journal import Journal
 from inerter.work.pool import Pool, worker_pool
 
@@ -45,47 +44,7 @@ TABLES = (
     *("rig", "figure8", "figure9", "figure10"),  # of the virtual rig
     *("linear-rows", "designs", "simulated-rows", "curves", "claims", "methods", "optima", "budgets", "origins"),
 )
-Numbers = dict[str, Any]
 Progress = Callable[[str, int, int], None]
-
-
-@dataclass(frozen=True)
-class PaperItem:
-    """Task of the reproduction: a row of a table, a point of a curve, a crossing, an optimum, or a break-even value."""
-
-    part: str
-    name: str
-    given: tuple[tuple[str, float], ...] = ()  # parameters that another part has found
-
-    @property
-    def key(self) -> tuple[str, str]:
-        """Part and name, unique among all tasks."""
-        return self.part, self.name
-
-
-def work(task: PaperItem) -> tuple[tuple[str, str], Numbers]:
-    """The numbers of one task, and how many `seconds` they took."""
-    begin = time.perf_counter()
-    with one_blas_thread():
-        numbers = _numbers(task)
-    return task.key, {**numbers, "seconds": round(time.perf_counter() - begin, 3)}
-
-
-_COMPUTE: dict[str, Callable[[str], Numbers]] = {
-    "rig": rig.compute,
-    "between": between.compute,
-    "methods": agreement.compute,
-    "optima": beyond.compute_optimum,
-    "budgets": beyond.compute_budget,
-}
-
-
-def _numbers(task: PaperItem) -> Numbers:
-    if task.part == "curves":
-        return curves.compute(task.name, dict(task.given))
-    if task.part in _COMPUTE:
-        return _COMPUTE[task.part](task.name)
-    return rows.compute(int(task.part.removeprefix("table")), task.name)
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,7 +127,12 @@ def _result_names() -> tuple[str, ...]:
 
 
 def _warm_up() -> None:
-    """Go through some quick tasks, which compile what simulations need, while others compile what the studies do."""
+    """Go through some quick tasks, which compile what simulations need, while others compile what the studies do.
+
+    What is compiled already is loaded by the first task that needs it.
+    """
+    if all(map(is_kept, KERNELS)):
+        return
     prepare(KERNELS)  # first what the linear studies do not compile themselves
     for part, name in (("table1", "J5 4"), ("table1", "J1 4"), ("table3", "J1 3"), ("table3", "J5 3")):
         work(PaperItem(part, name))

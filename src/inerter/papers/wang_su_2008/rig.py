@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.identification.staged_protocol import identify_staged
-from inerter.identification.virtual_rig import VirtualRig
 from inerter.networks.elements import Damper, Friction, Inerter, Network, Spring
 from inerter.records.result import Response
 from inerter.signals.harmonics import cosine, flat_multisine
@@ -68,6 +66,9 @@ def device(inertance: float) -> Network:
 
 def compute(name: str) -> dict[str, Any]:
     """Numbers of the three tests, for JSON."""
+    from inerter.identification.staged_protocol import identify_staged  # noqa: PLC0415 - heavy
+    from inerter.identification.virtual_rig import VirtualRig  # noqa: PLC0415 - heavy
+
     assert name == NAME
     whole, bare = device(PRINTED["b"]), device(SHAFT)
     slow = VirtualRig(bare, seed=0).run(cosine(1e-3, 0.1), duration=20.0)

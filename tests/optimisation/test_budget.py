@@ -53,6 +53,33 @@ def test_two_stiffness_curves_cross_where_their_values_are_equal():
     assert found.status.ok
 
 
+@pytest.mark.parametrize("beyond", [1.02, 1.2, 1.6])
+@pytest.mark.parametrize("present", sampled([700.0, 1500.0, 4000.0, 9000.0], [1500.0], kept=2))
+def test_a_range_between_two_points_of_the_grid_is_found(present, beyond):
+    """The baseline has the same damper with a little more than the best damping: its own is one end of the range."""
+
+    def comfort(damping):
+        return value(conventional(damping=damping), J1, Norm())
+
+    best = scipy.optimize.minimize_scalar(comfort, bounds=(2e3, 2e4), method="bounded").x
+    baseline = paper_quarter_car(Spring(120e3, "k") | Damper(beyond * best, "other"))
+    found = break_even(conventional(damping=present), baseline, J1, parameter="c", method=Norm())
+    other = scipy.optimize.brentq(lambda c: comfort(c) - comfort(beyond * best), 0.1 * best, best)
+    assert [c.value for c in found.crossings] == pytest.approx([other, beyond * best], rel=1e-7)
+    assert [r.better for r in found.ranges] == [False, True, False]
+
+
+@pytest.mark.parametrize("inertance", sampled([5.0, 9.0, 16.0, 30.0, 50.0], [9.0, 30.0], kept=2))
+def test_no_range_holds_a_value_at_which_an_undamped_motion_is_excited(inertance):
+    """Inerter and spring in series hold the strut rigid at the frequency at which the car bounces on its tyre."""
+    strut = Spring(120e3, "k") | Damper(4674.8, "c") | Inerter(inertance, "b") - Spring(1e4, "held")
+    held = inertance * 120e3 / (181.75 + 25.0)
+    found = break_even(paper_quarter_car(strut), conventional(damping=1e5), J1, parameter="held", method=Norm())
+    assert not any(r.better for r in found.ranges if r.lower <= held <= r.upper)
+    around = [held * factor for factor in (0.5, 2.0)]
+    assert all(r.better for r in found.ranges for at in around if r.lower <= at <= r.upper)
+
+
 @pytest.mark.campaign
 def test_a_damper_of_the_design_alone_has_a_range():
     """Better between two dampings: the smallest that beats the baseline is the budget, and both are crossings."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
@@ -108,7 +109,9 @@ def break_even(
     on the same roads throughout. The standard error of a crossing is that of the difference, over the slope, as is its
     error bound. An `executor` shares the roads, as that of `evaluate` does.
 
-    Two crossings between neighbouring points of the grid are not detected: narrow the bounds where that is possible.
+    Where the difference of one sign is nearest to zero is sought between the points as well, so that a narrow range is
+    found, but not by a method with random inputs, whose values take long: there two crossings between neighbouring
+    points are not detected, and narrower bounds help.
 
     Raises `DesignError` for an unknown element, for elements of several kinds, for a free value without bounds, or for
     bounds that are not positive and in order; for an element whose value a condition of the index changes; and the
@@ -176,7 +179,9 @@ def _budget(
         return found.value if abs(found.value) > _CERTAIN * found.standard_error else difference(logarithm)
 
     grid = np.linspace(np.log(lower), np.log(upper), _POINTS).tolist()
-    gaps = [certain_difference(at) for at in grid]
+    step, gaps = grid[1] - grid[0], [certain_difference(at) for at in grid]
+    if not isinstance(method, AveragingMethod):
+        grid, gaps = _with_turning_points(certain_difference, grid, gaps)
     crossings = tuple(
         _crossing(difference, known, a, b, parameter, exact=exact)
         for (a, left), (b, right) in pairwise(zip(grid, gaps, strict=True))
@@ -188,7 +193,7 @@ def _budget(
     ends = [c for c in crossings if c.better == wanted]
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     ranges = _ranges(grid, gaps, crossings, between)
-    asked = [sampled[at].status for at in grid if end is None or is_within_range(at, end, grid[1] - grid[0])]
+    asked = [sampled[at].status for at in grid if end is None or is_within_range(at, end, step)]
     return BreakEven(
         parameter=parameter,
         unit=chosen[0].unit,
@@ -202,6 +207,24 @@ def _budget(
         evaluations=len(sampled),
         error_bound=np.nan if end is None else end.error_bound,
     )
+
+
+def _with_turning_points(
+    difference: Callable[[float], float], grid: Sequence[float], gaps: Sequence[float]
+) -> tuple[list[float], list[float]]:
+    """The grid and its differences, with the points between at which a difference of one sign is nearest to zero."""
+    points = list(zip(grid, gaps, strict=True))
+    for (a, left), (_, middle), (b, right) in zip(points, points[1:], points[2:], strict=False):
+        side = math.copysign(1.0, middle)
+
+        def distance(at: float, side: float = side) -> float:
+            return side * difference(at)
+
+        if math.isfinite(middle) and 0.0 < side * middle <= min(side * left, side * right):
+            turn = scipy.optimize.minimize_scalar(distance, bounds=(a, b), method="bounded")
+            points.append((float(turn.x), side * float(turn.fun)))
+    points.sort()
+    return [at for at, _ in points], [gap for _, gap in points]
 
 
 def with_element(vehicle: Vehicle, parameter: str, value: float, by_label: bool | None = None) -> Vehicle:

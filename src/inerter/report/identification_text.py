@@ -20,7 +20,7 @@ INDEPENDENT = 1e-3  # a p-value above is that of residuals without pattern
 def identification_text(found: IdentificationResult) -> str:
     """Reliability, records, estimates, goodness, the next experiment, elements.
 
-    ASCII, 80 columns.
+    ASCII but for names and titles, 80 columns.
     """
     blocks = (
         _warning_lines(found),
@@ -33,8 +33,7 @@ def identification_text(found: IdentificationResult) -> str:
         iter(elements_block(found).splitlines()),
         iter(wrap(f"Status: {found.fit.status}", WIDTH)),
     )
-    text = "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
-    return text.encode("ascii", "replace").decode()
+    return "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
 
 
 def _warning_lines(found: IdentificationResult) -> Iterator[str]:

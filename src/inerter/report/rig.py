@@ -15,8 +15,7 @@ from inerter.report.text import WIDTH
 
 def rig_text(request: RigRequest, record: Record) -> str:
     """The title, the signal, the samples, notes, the largest displacement and force, and whether the cell saturated."""
-    text = "\n".join(line for part in _lines(request, record) for line in wrap(part, WIDTH, subsequent_indent="  "))
-    return text.encode("ascii", "replace").decode()
+    return "\n".join(line for part in _lines(request, record) for line in wrap(part, WIDTH, subsequent_indent="  "))
 
 
 def _lines(request: RigRequest, record: Record) -> Iterator[str]:

@@ -17,10 +17,9 @@ from inerter.units import quote_value
 
 
 def simulation_text(result: SimulationResult, window: Window | None) -> str:
-    """The request, r.m.s. values, events, energy, status and what the figure shows: ASCII, at most 80 columns."""
+    """The request, r.m.s. values, events, energy, status and what the figure shows: at most 80 columns."""
     blocks = (_request(result), _values(result), _elements(result), _energy(result), _status(result, window))
-    text = "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
-    return text.encode("ascii", "replace").decode()
+    return "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
 
 
 def simulation_data(result: SimulationResult) -> dict[str, Any]:

@@ -26,9 +26,9 @@ def wrap_text(text: str, width: int = WIDTH, **indents: str) -> list[str]:
 
 
 def section_text(sections: Iterable[Section]) -> str:
-    """Tables and remarks of the sections of results: ASCII, at most 80 columns."""
+    """Tables and remarks of the sections of results: ASCII but for names and titles, at most 80 columns."""
     blocks = ["\n".join(block) for section in sections for block in _blocks(section)]
-    return "\n\n".join(blocks).encode("ascii", "replace").decode()
+    return "\n\n".join(blocks)
 
 
 def _blocks(section: Section) -> Iterator[list[str]]:

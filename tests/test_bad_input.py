@@ -38,6 +38,7 @@ from inerter import (
     hinf_norm,
     network,
     optimise,
+    plot_bode,
     state_space,
 )
 
@@ -187,10 +188,18 @@ WRONG = {
     "a class as method": (lambda: evaluate(car(), J1, Norm), "Expected a method"),
     "a name as method": (lambda: evaluate(car(), J1, "norm"), "Expected a method such as Norm()"),
     "a number as vehicle": (lambda: evaluate(5, J1, Norm()), "Expected a vehicle"),
+    "an optimum as vehicle": (
+        lambda: evaluate(optimise(open_car(), J1, Norm()), J1, Norm()),
+        "got Optimum. Its vehicle is its attribute design.",
+    ),
+    "one name as a response": (
+        lambda: plot_bode(car(), "sprung_acceleration"),
+        'of an input and an output such as ("road", "sprung_acceleration"), got \'sprung_acceleration\'',
+    ),
     "unknown conventions": (lambda: Norm("paper2009"), "available: exact, paper2008"),
     "no comfort defined": (
         lambda: evaluate(mechanism(measures=PerformanceOutputs()), J1, Norm()),
-        "Set measures.comfort",
+        "Set measures.comfort, such as a_acceleration.",
     ),
     "no load carrying defined": (lambda: evaluate(mechanism(), J5, Norm()), "measures.load_input"),
     "no road to drive on": (lambda: evaluate(mechanism(tyres=(), roads=()), J1, Norm()), "has no tyre"),

@@ -53,6 +53,11 @@ def test_results_of_one_study_agree(before: Path, tmp_path: Path, capsys: pytest
     assert said.endswith("Both are of the same study. Common values: 4. Different beyond their errors: 0.")
 
 
+def test_a_list_that_differs_is_shown(before: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    less = run(tmp_path / "less", study_text('indices = ["J1"]\nbaseline = "S1"'))
+    assert 'study.indices "J1", "J3" "J1" Only in' in compared(before, less, capsys)[1]
+
+
 def test_a_road_that_is_four_times_as_rough_doubles_every_value(
     before: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

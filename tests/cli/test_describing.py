@@ -108,6 +108,9 @@ def test_words_that_keys_take_are_told_too(word, capsys):
     [
         ("road.sped", 'Did you mean "road.speed"?'),
         ("spedd", 'Did you mean "speed"?'),
+        ("sprung_mas", 'Did you mean "sprung_mass"?'),
+        ("tyre", "Keys that mention it: vehicle.tyre_stiffness"),
+        ("tire", "Keys that mention it: vehicle.tyre_stiffness"),
         ("xyz.abc", "inerter explain"),
         ("", "inerter explain"),
         ("...", "inerter explain"),

@@ -36,6 +36,13 @@ def test_a_start_for_every_vehicle(model, tmp_path, monkeypatch, capsys):
     assert (tmp_path / f"{model}.toml").read_text(encoding="utf-8") == text
 
 
+def test_the_command_for_a_name_with_spaces_can_be_pasted(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert call(["new", "-o", "my car.toml"]) == 0
+    assert "run it: inerter run 'my car.toml'" in capsys.readouterr().err
+    assert "# Run it: inerter run 'my car.toml'\n" in (tmp_path / "my car.toml").read_text(encoding="utf-8")
+
+
 def test_what_is_a_remark_can_be_taken_in():
     """Every key that is only told is one that the file may have."""
     text = starting_text("quarter-car")

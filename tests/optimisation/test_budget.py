@@ -161,6 +161,14 @@ def test_a_break_even_value_is_as_uncertain_as_the_values_that_are_equal_there(f
         assert found.status.ok
 
 
+def test_a_break_even_value_with_an_enormous_error_has_no_number_for_it():
+    here = it.compare(with_inertance(20.0), conventional(40e3, 3e3), J1, Linearisation())
+    few, many = (budget._within_promise(bound, here, "f").message for bound in (0.5, 8.2e11))
+    assert "with a relative error of up to 50 %, more than 10 %" in few
+    assert "uncertain by more than a factor of 10: the values" in many
+    assert "e+" not in many
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize(("friction", "index"), sampled([(20.0, J3), (60.0, J1), (100.0, J3)], kept=1))
 def test_break_even_friction_is_within_its_bound_of_that_of_simulations(friction, index):

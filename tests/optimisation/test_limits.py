@@ -10,7 +10,9 @@ from strategies import random_half_car, random_quarter_car
 from wang_su import J1, J3, J5, paper_quarter_car
 
 import inerter as it
+from inerter.errors import ErrorSource, Status, StatusKind
 from inerter.methods.multisine_lines import SampledObjective
+from inerter.optimisation.active_constraints import ConstraintResult, with_limits
 from inerter.optimisation.constrained_search import ConstrainedProblem
 from inerter.optimisation.limits import bounds_of, for_each
 
@@ -140,6 +142,24 @@ def test_what_nothing_keeps_is_said_with_the_nearest_that_is():
     assert "r.m.s. dynamic tyre load at most 490 N" in best.status.message
     assert "501.2 N" in best.status.message
     assert np.isnan(best.limits[0].sensitivity)
+
+
+@pytest.mark.parametrize(
+    ("limit", "bound", "kind"),
+    [
+        (it.at_most(J3, 119.0), 0.2, "inaccurate"),
+        (it.at_most(J3, 121.0), 0.2, "ok"),
+        (it.at_least(J3, 81.0), 0.2, "inaccurate"),
+        (it.at_least(J3, 79.0), 0.2, "ok"),
+        (it.equal(J3, 100.0), 0.2, "inaccurate"),
+        (it.at_most(J3, 1e9), np.nan, "inaccurate"),
+    ],
+)
+def test_an_uncertain_quantity_makes_an_optimum_uncertain_where_its_error_may_break_the_limit(limit, bound, kind):
+    doubt = Status(StatusKind.INACCURATE, "as an example")
+    estimate = it.Estimate(100.0, "N", doubt, error_sources=(ErrorSource("road", bound),))
+    best = with_limits(it.Estimate(1.0, "m/s^2"), [ConstraintResult(limit, estimate, False, 0.0)])
+    assert str(best.status.kind) == kind
 
 
 def test_a_limit_over_two_tyres_holds_for_each():

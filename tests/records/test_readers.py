@@ -213,6 +213,18 @@ def test_what_was_decided_is_noted(tmp_path):
     assert record.meta["channels"] == {"time": "time", "displacement": "x", "force": "F"}
 
 
+def test_an_angle_is_no_displacement_without_the_lead_of_the_screw(tmp_path):
+    turns = X / 0.016 * 360.0
+    path = write_csv(tmp_path / "a.csv", [["time [s]", "x [°]", "F [N]"]], [T, turns, F])
+    with pytest.raises(RecordError, match="is a unit of angle, not of displacement"):
+        it.read_record(path)
+    with_lead = it.read_record(path, units={"displacement": f"{16 / 360} mm"})
+    assert with_lead.displacement == pytest.approx(X, abs=1e-12)
+    assert it.read_record(path, units={"displacement": "mm"}).notes == (
+        "The displacement 'x' was read in mm, instead of ° in the file, a unit of angle: 1 ° counts as 1 mm.",
+    )
+
+
 def test_a_file_that_was_cut_short(tmp_path):
     wave = {"wf_increment": 2e-3}
     units = {"x": {"unit_string": "m", **wave}, "F": {"unit_string": "N", **wave}}

@@ -64,7 +64,9 @@ def _more(count: int) -> Iterator[str]:
 
 
 def _entry(value: object) -> str:
-    return "not set" if value is None else quote_value(value)
+    if value is None:
+        return "not set"
+    return ", ".join(map(_entry, value)) if isinstance(value, list | tuple) else quote_value(value)
 
 
 def _size(one: ValueChange) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from inspect import getdoc
 from textwrap import wrap
@@ -11,7 +12,7 @@ from typing import Any
 from inerter.errors import StudyError
 from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of_files
 from inerter.files.common.kinds import kinds
-from inerter.files.common.suggest import nearest
+from inerter.files.common.suggest import nearest, some
 from inerter.files.common.toml import as_line
 from inerter.files.study import KIND
 from inerter.formatting import format_list
@@ -71,7 +72,18 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     known = (
         [key.place for key in keys] + [key.name for key in keys] + [word for rows in _words().values() for word in rows]
     )
-    return f"Unknown key {quote_value(wanted)}.{nearest(wanted, known)} All keys: inerter explain"
+    words = _words_of(wanted.replace("tire", "tyre"))
+    about = [
+        key.place
+        for key in keys
+        if words <= _words_of(f"{key.place} {key.sentence}") and key.name not in (ANY_NAME, "from", "to")
+    ]
+    hint = f" Keys that mention it: {some(dict.fromkeys(about))}." if words and about else nearest(wanted, known)
+    return f"Unknown key {quote_value(wanted)}.{hint} All keys: inerter explain"
+
+
+def _words_of(text: str) -> set[str]:
+    return set(re.findall("[a-z0-9]+", text.lower()))
 
 
 def _describe_key(key: Key, keys: Sequence[Key]) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 from inerter.atomic_io import write_text
@@ -41,7 +42,7 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
         ) from None
     except (FileNotFoundError, NotADirectoryError):
         raise StudyError(f"{path}: folder not found. Choose another file with -o.") from None
-    say(f"wrote {path}; run it: inerter run {path}")
+    say(f"wrote {path}; run it: {shlex.join(['inerter', 'run', str(path)])}")
 
 
 def _check_own(path: Path) -> None:

@@ -20,7 +20,7 @@ from inerter.signals.road import Road
 from inerter.systems.filters import Filter, as_filter
 from inerter.systems.input_paths import InputPath, inputs_of
 from inerter.systems.linear import LinearSystem
-from inerter.systems.outputs import unit_of
+from inerter.systems.outputs import of_mount, unit_of
 from inerter.units import PURE, combine_units
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
@@ -245,5 +245,9 @@ def on_road(
     if isinstance(index.road, Road) and not mechanism.roads:
         raise PerformanceIndexError(f"{index.symbol} requires a road, and this mechanism has no tyre. Add a tyre.")
     if not outputs:
-        raise PerformanceIndexError(f"The mechanism does not define the outputs of {index.symbol}. Set {where}.")
+        loads = [of_mount(tyre)[0] for tyre in mechanism.tyres]
+        moving = [f"{one.name}_acceleration" for one in mechanism.coordinates]
+        example = {"measures.tyre_load": loads, "measures.comfort": moving[:1]}.get(where)
+        such = f", such as {format_list(example)}" if example else ""
+        raise PerformanceIndexError(f"The mechanism does not define the outputs of {index.symbol}. Set {where}{such}.")
     return IndexDefinition(outputs, combination, index.road, index.unit, filter)

@@ -51,6 +51,17 @@ class ConstraintResult:
             off = float(np.log(self.value / self.limit.value))
         return {Sense.AT_MOST: off, Sense.AT_LEAST: -off, Sense.EQUAL: abs(off)}[self.limit.sense]
 
+    @property
+    def is_safe(self) -> bool:
+        """Whether no value within the confidence interval and the error bound breaks the constraint."""
+        low, high = self.estimate.interval or (self.value, self.value)
+        bound = self.estimate.error_bound
+        return {
+            Sense.AT_MOST: high * (1.0 + bound) <= self.limit.value,
+            Sense.AT_LEAST: low * (1.0 - bound) >= self.limit.value,
+            Sense.EQUAL: False,
+        }[self.limit.sense]
+
 
 def constraint_results(
     problem: ConstrainedProblem, design: Vehicle, method: Method, point: Array, *, known: bool
@@ -80,8 +91,15 @@ def constraints_at(design: Vehicle, limits: Sequence[Limit], method: Method) -> 
 
 
 def with_limits(estimate: Estimate, held: Sequence[ConstraintResult]) -> Estimate:
-    """The estimate of an optimum, with a status no better than those of its constrained quantities."""
-    unsure = [one for one in held if not one.estimate.status.ok]
+    """The estimate of an optimum, with a status no better than those of its constrained quantities.
+
+    An inaccurate quantity counts only where its error may break the constraint.
+    """
+    unsure = [
+        one
+        for one in held
+        if not one.estimate.status.ok and not (one.estimate.status.kind is StatusKind.INACCURATE and one.is_safe)
+    ]
     status = worst_of((estimate.status, *(one.estimate.status for one in unsure)))
     if status == estimate.status:
         return estimate

@@ -32,6 +32,7 @@ _SLOPE = 0.02  # relative step of the slope's difference
 _CERTAIN = 20.0  # standard errors of a difference by samples beyond which no control variate changes its sign
 _WITHIN, _EXACTLY = 1e-5, 1e-11  # relative error of a crossing, of values with and without errors of the method
 _PROMISE = 0.1  # relative error of a break-even value that is ok, sampling apart
+_UNKNOWN = 9.0  # relative error, a factor of 10, beyond which its size says nothing
 
 
 @dataclass(frozen=True)
@@ -335,11 +336,11 @@ def _within_promise(bound: float, here: Comparison, parameter: str) -> Status:
             "error sources",
         )
     first, second = (format_share(one.error_bound, 2) for one in (here.first, here.second))
+    size = f"with a relative error of up to {format_share(bound, 2)}, more than {format_share(_PROMISE, 2)}"
     return Status(
         StatusKind.INACCURATE,
-        f"break-even value with a relative error of up to {format_share(bound, 2)}, more than "
-        f"{format_share(_PROMISE, 2)}: the values compared may be off by {first} and {second}, and change little with "
-        f"{parameter}",
+        f"break-even value {size if bound < _UNKNOWN else 'uncertain by more than a factor of 10'}: the values "
+        f"compared may be off by {first} and {second}, and change little with {parameter}",
     )
 
 

@@ -23,6 +23,7 @@ _EXAMPLES = {
 _WEIGHTS = {"kg": "kgf", "lb": "lbf"}
 EXAMPLES = {role: re.split(r",| or ", units)[0] for role, units in _EXAMPLES.items()}
 _VOLTS = {"kV": 1e3, "mV": 1e-3, "uV": 1e-6, "\u00b5V": 1e-6, "\u03bcV": 1e-6}  # a quantity is the value of one volt
+_ANGLES = ("\u00b0", "deg", "degree", "degrees", "grad", "rad", "rev", "turn")
 _QUANTITY = re.compile(r"\s*[+-]?[\d.]")
 _POWER = re.compile(r"(?<=[A-Za-z])([23])(?!\w)")
 
@@ -119,11 +120,18 @@ def _problem(role: str, channel: Channel, unit: str, given: str | None) -> Text:
             Remedy(Action.UNIT, (role, force)),
             f" (1 {force} = {format_quantity(parse_quantity('1 ' + force, 'N'), 'N', 6)}).",
         )
+    if role == "displacement" and unit.strip().lower() in _ANGLES:
+        return (
+            f"{whose} is a unit of angle, not of displacement. Name the displacement for one {unit}, for a screw the "
+            "lead divided by one turn in this unit; with a lead of 16 mm and degrees ",
+            Remedy(Action.UNIT, (role, "0.04444 mm")),
+            ".",
+        )
     return (
         f"{whose} is not a unit of {role}, such as {_EXAMPLES[role]}. Name the unit, ",
         Remedy(Action.UNIT, (role, EXAMPLES[role])),
         ", or the value of one count or volt of the file, ",
-        Remedy(Action.UNIT, (role, f"250 {CHANNELS[role]}")),
+        Remedy(Action.UNIT, (role, f"0.25 {EXAMPLES[role]}")),
         ".",
     )
 
@@ -135,5 +143,8 @@ def _note(role: str, channel: Channel, unit: str, given: str | None, value: floa
     if _QUANTITY.match(unit):
         one = "One volt" if channel.unit.strip() in _VOLTS else "One unit"
         return f"{one} of the {role} {channel.name!r} was read as {unit}, {said}."
-    worth = "" if value == 1.0 else f" (1 {unit} = {format_quantity(value, CHANNELS[role], 6)})"
+    size = format_quantity(value, CHANNELS[role], 6)
+    worth = "" if value == 1.0 or size == f"1 {unit}" else f" (1 {unit} = {size})"
+    if role == "displacement" and channel.unit.strip().lower() in _ANGLES:
+        said += f", a unit of angle: 1 {channel.unit} counts as {size}"
     return f"The {role} {channel.name!r} was read in {unit}{worth}, {said}."

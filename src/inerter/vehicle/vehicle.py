@@ -35,9 +35,11 @@ class Vehicle(Protocol):
 
 
 def check_vehicle(vehicle: object) -> None:
-    """Raise `DesignError` unless `vehicle` is a vehicle, not a class."""
+    """Raise `DesignError` unless `vehicle` is a vehicle, not a class; a result is pointed to its design."""
     if isinstance(vehicle, type) or not callable(getattr(vehicle, "mechanism", None)):
-        raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {vehicle!r}.")
+        what = type(vehicle).__name__
+        got = f"{what}. Its vehicle is its attribute design" if hasattr(vehicle, "design") else repr(vehicle)
+        raise DesignError(f"Expected a vehicle, such as QuarterCar(...), got {got}.")
 
 
 def check_fixed(design: Vehicle | Mechanism) -> None:

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from inerter.errors import DesignError, LinearSystemError
+from inerter.errors import DesignError, LinearSystemError, PerformanceIndexError
 from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import curve_looks
 from inerter.files.study.responses import gain_unit, output_weights, response_in_words, source_unit
 from inerter.formatting import capital, in_words
 from inerter.indices.definition import Index
+from inerter.methods.composite_index import is_index
 from inerter.methods.linear import CONVENTIONS, linear_problem
 from inerter.norms.response import frequency_response, resonant_range
 from inerter.systems.assemble import state_space
@@ -59,6 +60,11 @@ def _system(
 ) -> tuple[LinearSystem, int | None, dict[str, float], str, str]:
     """System of a response, order of its Pade approximants, weight of each output, and the gain in words and unit."""
     if not isinstance(response, tuple):
+        if not is_index(response):
+            raise PerformanceIndexError(
+                "Expected a response: an index such as RideComfort(road), or the names of an input and an output such "
+                f'as ("road", "sprung_acceleration"), got {response!r}.'
+            )
         check_fixed(mechanism)
         problem = linear_problem(mechanism, response.definition(mechanism), CONVENTIONS["exact"])
         system = problem.system(close(problem.descriptor, {}))

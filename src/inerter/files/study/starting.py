@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Iterator
+from shlex import quote
 from typing import Any
 
 from inerter.errors import InerterError, StudyError, with_article
@@ -78,7 +79,7 @@ def starting_text(model: str, name: str = "STUDY.toml") -> str:
         [
             f"# A study of {with_article(car)}: which values make each layout best, and which layout is the best?",
             "#",
-            f"# Run it: inerter run {name}",
+            f"# Run it: inerter run {quote(name)}",
             "# What a key means: inerter explain road.speed",
         ],
         [as_line("title", f"{car.capitalize()}: with an inerter and without")],

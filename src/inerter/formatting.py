@@ -381,6 +381,17 @@ def format_list(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
+def format_some(words: Iterable[str], most: int) -> str:
+    """The first words one after another, and the number of further ones.
+
+    >>> format_some(["k", "c", "b", "f"], most=2)
+    'k, c and 2 more'
+    """
+    known = list(words)
+    more = f" and {len(known) - most} more" if len(known) > most else ""
+    return f"{', '.join(known[:most])}{more}"
+
+
 def format_count(number: int, several: str) -> str:
     """A number of things that are named in the plural, as in 1 design, 2 designs."""
     return f"{number} {several.removesuffix('s') if number == 1 else several}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from inerter.errors import ExportError
-from inerter.formatting import format_quantity
+from inerter.formatting import format_quantity, format_some
 from inerter.systems.graph import linear_graph
 from inerter.systems.outputs import velocity_of
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
@@ -21,9 +21,8 @@ def refuse_nonlinear(mechanism: Mechanism) -> None:
 def refuse_notes(notes: Sequence[str]) -> None:
     """Raise `ExportError` if a linear model leaves something out."""
     if notes:
-        more = f" and {len(notes) - _SHOWN} more" if len(notes) > _SHOWN else ""
         raise ExportError(
-            f"A linear model has neither friction nor gaps ({', '.join(notes[:_SHOWN])}{more}). To export the design "
+            f"A linear model has neither friction nor gaps ({format_some(notes, _SHOWN)}). To export the design "
             "without them: linear=True, on the command line --linear."
         )
 

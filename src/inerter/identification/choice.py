@@ -17,6 +17,7 @@ from inerter.identification.arguments import checked_records, model_of, warn_of_
 from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.identify import solution_of
+from inerter.identification.intervals import soft_squares
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
@@ -35,7 +36,6 @@ from inerter.work.running import running_on
 
 Matrix = NDArray[np.float64]
 LEAST, MOST = 0.02, 0.1  # of the loss: least and largest allowed difference
-_ROBUST = 3.0  # whitened residuals beyond this count less than their square
 _BLOCKS = 20
 _RANGE = 4.0  # factor about known values, within which a fit is repeated
 _AGAIN = " again"  # not a name of a candidate
@@ -270,7 +270,7 @@ def _losses(fit: Fit, whitenings: Sequence[Whitening]) -> Matrix:
     parts = []
     for c, whitening in zip((c for c in fit.comparisons if c.checked.any()), whitenings, strict=True):
         white = whitening(c.residual)[whitening.weight > 0.0]
-        parts.append(2.0 * _ROBUST**2 * (np.sqrt(1.0 + (white / _ROBUST) ** 2) - 1.0))
+        parts.append(soft_squares(white))
     return np.concatenate(parts)
 
 

@@ -279,4 +279,9 @@ def constrained_optimum(problem: FitProblem, optimum: BestFit, i: int, value: fl
 
 def robust_cost(residual: Matrix) -> float:
     """Half the sum of soft-l1 squares, as `improve` minimises it."""
-    return float(np.sum(ROBUST**2 * (np.sqrt(1.0 + (residual / ROBUST) ** 2) - 1.0)))
+    return 0.5 * float(np.sum(soft_squares(residual)))
+
+
+def soft_squares(residual: Matrix) -> Matrix:
+    """Soft-l1 squares of whitened residuals, linear beyond `ROBUST`."""
+    return np.asarray(2.0 * ROBUST**2 * (np.sqrt(1.0 + (residual / ROBUST) ** 2) - 1.0))

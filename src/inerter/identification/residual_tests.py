@@ -17,7 +17,7 @@ from scipy.stats import chi2
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.fit import NormalisedResidual
-from inerter.identification.intervals import ROBUST
+from inerter.identification.intervals import soft_squares
 from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.problem import FitProblem
 from inerter.identification.sensors import noise_residuals
@@ -105,10 +105,10 @@ def check_parts(fitted: Sequence[Experiment], whole: Sequence[Experiment], leads
 def mean_square(white: Matrix) -> float:
     """Mean square of whitened residuals without the largest hundredth, such as an impact that came too early.
 
-    Those beyond 3 count less than their square.
+    Those beyond `ROBUST` count less than their square.
     """
     most = np.sort(np.abs(white))[: white.size - white.size // _INSTANTS]
-    return float(np.mean(2.0 * ROBUST**2 * (np.sqrt(1.0 + (most / ROBUST) ** 2) - 1.0)))
+    return float(np.mean(soft_squares(most)))
 
 
 def portmanteau(white: Matrix) -> float:

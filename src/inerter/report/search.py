@@ -38,6 +38,7 @@ from inerter.formatting import (
     format_percent_size,
     format_quantity,
     format_share,
+    format_some,
 )
 from inerter.indices.names import title_with_name
 from inerter.methods.linear import CONVENTIONS
@@ -166,10 +167,10 @@ def search_notes(found: StudySearch) -> list[str]:
             reasons.setdefault(reason, []).append(network)
         told = sorted(reasons.items(), key=lambda entry: -len(entry[1]))
         for reason, networks in told[:_MOST_REASONS]:
-            more = f" and {len(networks) - _MOST_FAILED} more" * (len(networks) > _MOST_FAILED)
-            named = ", ".join(networks[:_MOST_FAILED])
             have = "1 network has" if len(networks) == 1 else f"{len(networks)} networks have"
-            notes.append(f"{one.heading}: {have} no value ({named}{more}): {reason.rstrip('.')}")
+            notes.append(
+                f"{one.heading}: {have} no value ({format_some(networks, _MOST_FAILED)}): {reason.rstrip('.')}"
+            )
         rest = sum(len(networks) for _, networks in told[_MOST_REASONS:])
         if rest:
             have = "1 more network has" if rest == 1 else f"{rest} more networks have"

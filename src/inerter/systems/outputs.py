@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import InerterError, PerformanceIndexError
-from inerter.formatting import in_words
+from inerter.formatting import format_some, in_words
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import Branch, Carriers, Graph, Mount, full_graph
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Coordinate, Mechanism, Strut, TrackedPoint, Tyre
@@ -303,6 +303,5 @@ def find(known: Mapping[str, Output], name: object, error: type[InerterError]) -
     if isinstance(name, str) and name in known:
         return known[name]
     close = get_close_matches(str(name), known, n=3)
-    more = f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
-    hint = f"Did you mean {' or '.join(close)}?" if close else f"Available: {', '.join([*known][:_LISTED])}{more}."
+    hint = f"Did you mean {' or '.join(close)}?" if close else f"Available: {format_some(known, _LISTED)}."
     raise error(f"Unknown output {name!r}. {hint}")

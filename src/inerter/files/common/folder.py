@@ -17,6 +17,7 @@ from filelock import FileLock, Timeout
 from inerter.atomic_io import defer_interrupts, is_disk_failure, sync_to_disk, temporary_folder
 from inerter.errors import StudyError, WorkError
 from inerter.files.common.listing import MARK, Entry, Listing, digest, is_linked, is_own, listing, names_below
+from inerter.formatting import format_some
 
 _LOCK, _NEW, _WHOLE = f"{MARK}/lock", f"{MARK}/new", f"{MARK}/whole"
 FIGURES, REPORT = "figures", "report.html"  # in folders of results of any command
@@ -246,8 +247,7 @@ def _kept_files_note(names: list[str]) -> str:
 
 
 def _name_list(names: list[str]) -> str:
-    shown = ", ".join(name.rstrip("/") for name in names[:_SHOWN])
-    return shown if len(names) <= _SHOWN else f"{shown} and {len(names) - _SHOWN} more"
+    return format_some((name.rstrip("/") for name in names), _SHOWN)
 
 
 def _is_empty(folder: Path) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from inerter.formatting import format_some
 from inerter.units import quote_value
 
 _MOST = 12  # names in a message
@@ -46,6 +47,4 @@ def some(names: Iterable[str]) -> str:
     >>> some(f"k{i}" for i in range(100))
     'k0, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11 and 88 more'
     """
-    known = list(names)
-    more = f" and {len(known) - _MOST} more" if len(known) > _MOST else ""
-    return ", ".join(known[:_MOST]) + more
+    return format_some(names, _MOST)

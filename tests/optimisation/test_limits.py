@@ -153,6 +153,7 @@ def test_what_nothing_keeps_is_said_with_the_nearest_that_is():
         (it.at_least(J3, 79.0), 0.2, "ok"),
         (it.equal(J3, 100.0), 0.2, "inaccurate"),
         (it.at_most(J3, 1e9), np.nan, "inaccurate"),
+        (it.at_most(J3, 1e9), 1e-14, "inaccurate"),  # by something that no bound covers
     ],
 )
 def test_an_uncertain_quantity_makes_an_optimum_uncertain_where_its_error_may_break_the_limit(limit, bound, kind):

@@ -12,6 +12,7 @@ from inerter.errors import OK, Status, StatusKind, worst_of
 from inerter.formatting import format_quantity
 from inerter.indices.definition import quantity_words
 from inerter.methods.composite_index import estimate_of
+from inerter.methods.error_bounds import STAND_INS
 from inerter.methods.method import Estimate, Method
 from inerter.optimisation.constrained_search import KEPT_COSTLY, ConstrainedProblem, sensitivities
 from inerter.optimisation.limits import Limit, Sense, for_each
@@ -53,9 +54,11 @@ class ConstraintResult:
 
     @property
     def is_safe(self) -> bool:
-        """Whether no value within the confidence interval and the error bound breaks the constraint."""
+        """Whether an error bound explains the status, and no value within it and the interval breaks the constraint."""
         low, high = self.estimate.interval or (self.value, self.value)
         bound = self.estimate.error_bound
+        if not bound > STAND_INS:
+            return False  # the inaccuracy has another cause, whose size is not known
         return {
             Sense.AT_MOST: high * (1.0 + bound) <= self.limit.value,
             Sense.AT_LEAST: low * (1.0 - bound) >= self.limit.value,

@@ -225,13 +225,26 @@ def test_what_cannot_be_exported_is_one_sentence(
     assert {path.name for path in folder.iterdir()} == before
 
 
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--to", "fmu", "--speed", "20"], '--speed: Got "20": unit missing'),
+        (["--to", "matlab", "--part", "strut"], "An export to matlab does not accept part: "),
+        (["--to", "svg", "--linear"], "An export to svg does not accept linear: "),
+        (["--to", "spice", "--only", "tyre_load"], "An export to spice does not accept outputs: "),
+    ],
+)
 def test_an_option_is_refused_before_any_search(
-    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    arguments: list[str],
+    sentence: str,
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("inerter.cli.export.chosen_design", None)
     assert folder.is_dir()
-    assert call(["export", "car.toml", "--to", "fmu", "--index", "J1", "--speed", "20"]) == 2
-    assert '--speed: Got "20": unit missing' in capsys.readouterr().err
+    assert call(["export", "car.toml", "--index", "J1", *arguments]) == 2
+    assert sentence in capsys.readouterr().err
 
 
 def test_a_point_of_a_sweep(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -38,6 +38,7 @@ def export(
 ) -> None:
     """Export a design of a study file or of a folder of results to a file, with `options` of `ExportSpec`."""
     kind, part = _kind(to), options["part"]
+    kind.check_options(name for name, value in {**options, "speed": speed}.items() if value)
     delayed = None if speed is None else positive_option("speed", speed, "m/s")
     if output is not None:
         check_suffix(kind, output)

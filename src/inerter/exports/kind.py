@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -57,12 +57,18 @@ class ExportKind:
         """Whether it is written to a file."""
         return bool(self.suffixes)
 
-    def contents(self, request: ExportSpec, suffix: str) -> Any:
-        """Contents by `make`; raises `ExportError` for an option that this kind, or the object, does not have."""
-        for option in (name for name in OPTIONS if request.has(name)):
+    def check_options(self, options: Iterable[str]) -> None:
+        """Raise `ExportError` for one of `OPTIONS` that this kind does not take."""
+        for option in options:
             if option not in self.takes:
                 text = OPTIONS[option]
                 raise ExportError(f"An export to {self.key} does not accept {option}: it does not support {text}.")
+
+    def contents(self, request: ExportSpec, suffix: str) -> Any:
+        """Contents by `make`; raises `ExportError` for an option that this kind, or the object, does not have."""
+        given = [name for name in OPTIONS if request.has(name)]
+        self.check_options(given)
+        for option in given:
             for kind, (options, reason) in _OF_OBJECTS.items():
                 if isinstance(request.of, kind) and option not in options:
                     raise ExportError(f"An export of a {kind.__name__.lower()} does not accept {option}: {reason}.")

@@ -215,13 +215,14 @@ BETTER = Improvement(16.0, 0.02)
         (
             [design("S1", 3.0, is_baseline=True, limits=(BROKEN,)), design("S3", 3.3, by=Improvement(-10.0))],
             VerdictKind.ANSWER,
-            "S3 is best in ride comfort (J1) of the struts that keep the limits, 10.0 % worse than S1, which does not "
-            "keep them.",
+            "S3 is best in ride comfort (J1) of the struts that satisfy the constraints, 10.0 % worse than S1, which "
+            "does not satisfy them.",
         ),
         (
             [design("S1", 3.0, is_baseline=True, limits=(BROKEN,)), design("S3", 2.0, by=BETTER, limits=(BROKEN,))],
             VerdictKind.NONE,
-            "No strut keeps the limits: S1 is the closest, with suspension travel 8.4 mm (limit: at most 8 mm).",
+            "No strut satisfies the constraints: S1 is the closest, with suspension travel 8.4 mm (limit: at most "
+            "8 mm).",
         ),
         (
             [BASE, design("S3", 2.0, unchosen=("c", "b"))],

@@ -47,6 +47,19 @@ def test_a_name_keeps_its_letters():
     assert all(f"  {name} " in text for name in ("weich", "härter", "härtér"))
 
 
+def test_methods_without_any_value_are_not_compared():
+    results = judged(designs())
+    results["value"].loc[{"index": "J3"}] = math.nan
+    results["status"] = results["status"].astype(object)
+    results["status"].loc[{"index": "J3"}] = "infeasible: no feasible design"
+    text = terminal_text(results)
+    assert "J1) by each method" in text
+    assert "J3) by each method" not in text
+    assert verdict_sentences(results)[list(results["index"].values).index("J3")] == (
+        "No strut satisfies the constraints, so none is best in dynamic tyre load (J3)."
+    )
+
+
 def test_designs_with_their_numbers():
     lines = terminal_text(designs()).split("\n")
     assert lines[:6] == [

@@ -119,8 +119,10 @@ def test_a_limit_that_nothing_keeps_is_said_and_is_no_best(load: Callable[..., S
     assert np.isfinite(result.data["parameter_value"].sel(layout="S3")).all()  # of the nearest design
     assert (result.failed, result.status.kind.value, exit_code([result.status])) == (False, "infeasible", 1)
     assert [str(text).partition(":")[0] for text in result.data["status"].values.ravel()] == ["infeasible"] * 2
-    assert verdict_sentences(result.data) == ["No strut keeps the limits, so that none is best in ride comfort (J1)."]
-    assert "the nearest design" in report(StudyContents(result.data, study), tmp_path)
+    assert verdict_sentences(result.data) == [
+        "No strut satisfies the constraints, so none is best in ride comfort (J1)."
+    ]
+    assert "value of the closest design" in report(StudyContents(result.data, study), tmp_path)
 
 
 @pytest.mark.parametrize(

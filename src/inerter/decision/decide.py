@@ -124,8 +124,8 @@ def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool
         return _sentence_without_baseline(contest, rest), True
     if base.breaks_limit and (by.is_equal or by.percent < 0.0):
         return (
-            f"{_best(contest)} in {lead.goal.words} of the struts that keep the limits{_friction(contest)}, "
-            f"{by.than(base.name)}, which does not keep them.",
+            f"{_best(contest)} in {lead.goal.words} of the struts that satisfy the constraints{_friction(contest)}, "
+            f"{by.than(base.name)}, which does not satisfy them.",
             True,
         )
     if len(winners) == 1:
@@ -140,9 +140,9 @@ def _no_winner(contest: Contest, unchosen: Sequence[DesignResult]) -> str:
         closest = min(broken, key=lambda one: one.excess)
         worst = max((one for one in closest.limits if one.kept is False), key=lambda one: one.excess, default=None)
         if worst is None:
-            return f"No strut keeps the limits, so that none is best in {closest.goal.words}."
+            return f"No strut satisfies the constraints, so none is best in {closest.goal.words}."
         return (
-            f"No strut keeps the limits: {closest.name} is the closest, with {worst.of} {worst.value} (limit: "
+            f"No strut satisfies the constraints: {closest.name} is the closest, with {worst.of} {worst.value} (limit: "
             f"{worst.side})."
         )
     if unchosen:
@@ -169,7 +169,7 @@ def _sentence_on_baseline(
         return f"No strut is better than {base.name} in {goal}{worse}.", True
     if broken := [one.name for one in contest.complete if one.breaks_limit]:
         verb = "does" if len(broken) == 1 else "do"
-        return f"{base.name} is the only strut that keeps the limits; {format_list(broken)} {verb} not.", True
+        return f"{base.name} is the only strut that satisfies the constraints; {format_list(broken)} {verb} not.", True
     if unchosen:
         return f"{unchosen_clause(unchosen)}: choose values, or find the best ones.", False
     return f"No strut but {base.name} has a finite value of {goal}.", True

@@ -157,6 +157,11 @@ def indices(results: xr.Dataset) -> list[str]:
     return names
 
 
+def indices_with_values(results: xr.Dataset) -> list[str]:
+    """Indices of which at least one design has a value, by any method and at any swept value."""
+    return [index for index in indices(results) if bool(results["value"].sel(index=index).notnull().any())]
+
+
 def index_title(results: xr.Dataset, index: str) -> str:
     """The name of an index in words, such as "ride comfort"."""
     return str(results["index_title"].sel(index=index).item())

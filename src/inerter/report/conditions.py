@@ -16,6 +16,7 @@ from inerter.figures.labels import (
     index_unit,
     index_words,
     indices,
+    indices_with_values,
     layouts,
     one_method,
 )
@@ -43,15 +44,20 @@ def in_condition(results: xr.Dataset, number: int) -> xr.Dataset:
 
 
 def condition_tables(results: xr.Dataset) -> list[Table]:
-    """Tables of value and improvement of each layout in each condition, one per index; empty for fewer than two."""
-    return [_table(one_method(results), index) for index in indices(results)] if condition_names(results) else []
+    """Tables of value and improvement of each layout in each condition, one per index with values.
+
+    Empty for fewer than two conditions.
+    """
+    if not condition_names(results):
+        return []
+    return [_table(one_method(results), index) for index in indices_with_values(results)]
 
 
 def brief_condition_tables(results: xr.Dataset) -> list[Table] | None:
     """Tables of the best and the worst condition of each layout, where there are many conditions; else None."""
     if len(condition_names(results)) <= MOST_LISTED:
         return None
-    return [_extreme_table(one_method(results), index) for index in indices(results)]
+    return [_extreme_table(one_method(results), index) for index in indices_with_values(results)]
 
 
 def swept_condition_sentences(results: xr.Dataset) -> Iterator[str]:

@@ -65,7 +65,7 @@ def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
     quantity = Shown(value, format_quantity(value, unit)) if active else Quantity(value, unit)
     content = f"{quantity} ({part})" if part else quantity
     if bool(infeasible(entry)):
-        return content, "the nearest design"
+        return content, "value of the closest design"
     if not active:
         return content, "not reached"
     if np.isnan(cost):
@@ -81,7 +81,7 @@ def _describe_swept_limit(entry: xr.Dataset) -> tuple[str, str]:
 def _describe_infeasible(entry: xr.Dataset) -> tuple[str, str]:
     """At how many swept values no design is feasible, and where."""
     count, where = _where(entry, _is_infeasible(entry)) or ("", "")
-    return (f"no design keeps them {count}", where) if count else ("kept everywhere", "")
+    return (f"no feasible design {count}", where) if count else ("feasible everywhere", "")
 
 
 def _is_infeasible(entry: xr.Dataset) -> NDArray[np.bool_]:

@@ -11,7 +11,7 @@ from inerter.figures.labels import (
     improvement_text,
     index_unit,
     index_words,
-    indices,
+    indices_with_values,
     layouts,
     method_label,
     methods,
@@ -23,8 +23,8 @@ from inerter.table import Cell, Row, Table, columns
 
 
 def method_tables(results: xr.Dataset) -> list[Table]:
-    """Tables of every layout by every method, one per index; empty with a single method."""
-    return [_table(results, index) for index in indices(results)] if len(methods(results)) > 1 else []
+    """Tables of every layout by every method, one per index with values; empty with a single method."""
+    return [_table(results, index) for index in indices_with_values(results)] if len(methods(results)) > 1 else []
 
 
 def _table(results: xr.Dataset, index: str) -> Table:

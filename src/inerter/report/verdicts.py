@@ -227,7 +227,7 @@ def _with_other_methods(results: xr.Dataset, index: str, told: Decision) -> str:
     clauses = [
         f"; {method_label(results, method)} {_clause(by_method(results, method), index, told)}"
         for method in names
-        if method != decisive
+        if method != decisive and (told.winners or study_decision(by_method(results, method), index).winners)
     ]
     return f"{sentence.removesuffix('.')}{''.join(clauses)}."
 

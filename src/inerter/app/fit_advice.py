@@ -75,6 +75,7 @@ def _switch(label: str, section: str, key: str) -> Callable[[Any], Offer]:
 _OFFERS: Mapping[Action, Callable[[Any], Offer]] = {
     Action.FIT_DELAY: _switch("Estimate the delay too", "fit", "delay"),
     Action.FIT_OFFSET: _switch("Estimate the offset too", "fit", "offset"),
+    Action.FIT_QUADRATIC: _switch("Estimate the quadratic damping too", "fit", "quadratic_damping"),
     Action.DETREND: _switch("Remove the drift", "record", "detrend"),
     Action.GAPS: _switch("Interpolate the missing samples", "record", "gaps"),
     Action.REPAIR: _switch("Interpolate those samples", "record", "repair"),

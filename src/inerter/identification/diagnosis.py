@@ -68,7 +68,8 @@ class Causes:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
             if self.hidden:
-                known = [h for h in laws(problem) if h.name not in _SHAFTS]
+                taken = (*_SHAFTS, *(h.name for h in problem.assumed))
+                known = [h for h in laws(problem) if h.name not in taken]
             elif not self.before.is_noise_limited:
                 known += hypotheses(problem, self.places)
                 known += [] if self.point is None else beyond_bounds(problem, self.point)

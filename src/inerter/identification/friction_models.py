@@ -8,8 +8,9 @@ the midpoint rule, with the impulse of friction at the end of each (Moreau 1988)
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -25,6 +26,7 @@ from inerter.networks.elements import Damper, Element, Free, Friction, Gap, Spri
 from inerter.networks.parser import format_expression
 
 Matrix = NDArray[np.float64]
+QUADRATIC_DAMPING, QUADRATIC_UNIT = "quadratic damping", "N s^2/m^2"
 _STEPS = 30.0  # in a period of the shaft's resonance, at least
 _MOST_PARTS = 64  # of a sampling interval
 _FINEST = 1.25e-4  # [s] of a step, at most
@@ -59,7 +61,7 @@ class ChainValues:
 def law_hypotheses(chain: Chain, fastest: float, stroke: float, peak: float = 0.0) -> Iterator[Hypothesis]:
     """Hypotheses on further laws of a chain, for motions of this largest speed [m/s], stroke [m] and force [N]."""
     yield from _parts(chain)
-    yield _quadratic(chain, fastest, peak)
+    yield quadratic_damping(chain, fastest, peak)
     if chain.spring is not None and peak > 0.0:
         yield _stiffening(chain, peak)
         yield _second_gap(chain, peak)
@@ -142,14 +144,15 @@ def _presliding(chain: Chain, stroke: float) -> Hypothesis:
     )
 
 
-def _quadratic(chain: Chain, fastest: float, peak: float) -> Hypothesis:
-    square = Unknown("quadratic damping", "N s^2/m^2", 0.0, max(1e3, 2.0 * peak) / fastest**2, 1.0 / fastest**2)
-
-    def details(values: Values) -> Details:
-        return {"most": values[square.name] * fastest**2}
-
+def quadratic_damping(chain: Chain, fastest: float, peak: float) -> Hypothesis:
+    """Hypothesis of a damping force that grows with the square of the speed, in parallel with the inertance."""
+    square = Unknown(QUADRATIC_DAMPING, QUADRATIC_UNIT, 0.0, max(1e3, 2.0 * peak) / fastest**2, 1.0 / fastest**2)
     starts = tuple({square.name: max(share * peak, 1.0) / fastest**2} for share in (0.05, 0.4))
-    return _changed_values(chain, Suspect.QUADRATIC, {"square": square}, details, starts)
+    return _changed_values(chain, Suspect.QUADRATIC, {"square": square}, partial(_quadratic_details, fastest), starts)
+
+
+def _quadratic_details(fastest: float, values: Values) -> Details:
+    return {"most": values[QUADRATIC_DAMPING] * fastest**2}
 
 
 def _ripple(chain: Chain, stroke: float) -> Hypothesis:
@@ -199,11 +202,12 @@ def _changed_values(
     starts: tuple[Values, ...],
 ) -> Hypothesis:
     """A hypothesis that changes some of the numbers of a chain."""
-
-    def change(plain: ChainValues, values: Values) -> ChainValues:
-        return replace(plain, **{what: values[unknown.name] for what, unknown in unknowns.items()})
-
+    change = partial(_with_values, {what: unknown.name for what, unknown in unknowns.items()})
     return _law(chain, name, tuple(unknowns.values()), change, details, starts)
+
+
+def _with_values(names: Mapping[str, str], plain: ChainValues, values: Values) -> ChainValues:
+    return replace(plain, **{what: values[name] for what, name in names.items()})
 
 
 def _law(
@@ -215,13 +219,15 @@ def _law(
     starts: tuple[Values, ...],
 ) -> Hypothesis:
     """A hypothesis under which a chain is another one."""
+    return Hypothesis(name, unknowns, read=partial(_read_under_law, chain, change), details=details, starts=starts)
 
-    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        plain = _numbers(chain, values)
-        difference = simulate_chain(change(plain, values), e, force.size) - simulate_chain(plain, e, force.size)
-        return np.asarray(force + read_by_load_cell(difference, e))
 
-    return Hypothesis(name, unknowns, read=read, details=details, starts=starts)
+def _read_under_law(
+    chain: Chain, change: Callable[[ChainValues, Values], ChainValues], force: Matrix, e: Experiment, values: Values
+) -> Matrix:
+    plain = _numbers(chain, values)
+    difference = simulate_chain(change(plain, values), e, force.size) - simulate_chain(plain, e, force.size)
+    return np.asarray(force + read_by_load_cell(difference, e))
 
 
 def _numbers(chain: Chain, values: Values) -> ChainValues:

@@ -27,6 +27,10 @@ class FitOptions:
     `force_scale` and `displacement_scale` are true values over readings, the same in all records, with their standard
     uncertainties (k = 1), such as "1 +- 1 %": readings are multiplied by them, and intervals include the uncertainty.
 
+    With `quadratic_damping` the device, a chain of a shaft, a gap and an inerter, has a damping in parallel with the
+    inerter whose force is c2 v abs(v); its coefficient c2 [N s^2/m^2] is a parameter of the fit. No study has such an
+    element.
+
     Raises `IdentificationError` for a `check` that is not a fraction from 0 to 0.6, fewer than 8 starts, or a scale
     that is not a positive number with an uncertainty below half of it.
 
@@ -45,6 +49,7 @@ class FitOptions:
     starts: int = POINTS
     force_scale: Uncertain | None = None  # or a text such as "1 +- 1 %"
     displacement_scale: Uncertain | None = None
+    quadratic_damping: bool = False
 
     def __post_init__(self) -> None:
         if not is_number(self.check) or not 0.0 <= self.check <= 0.6:
@@ -97,3 +102,4 @@ class OptionChanges(TypedDict, total=False):
     starts: int
     force_scale: Uncertain | str | float | None
     displacement_scale: Uncertain | str | float | None
+    quadratic_damping: bool

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from inerter.formatting import format_number
 from inerter.identification.experiment import Experiment
+from inerter.identification.friction_models import QUADRATIC_UNIT
 from inerter.identification.intervals import ROBUST, BestFit, steps_of
 from inerter.identification.options import FitOptions
 from inerter.identification.problem import FitProblem
@@ -34,6 +35,7 @@ _POWERS = {  # of the force's and of the displacement's scale in the value of an
     LinearRole.OPEN: (1.0, 0.0),
     LinearRole.CLOSED: (0.0, 1.0),
 }
+_OF_UNITS = {QUADRATIC_UNIT: (1.0, -2.0)}  # the same of the value of an unknown law
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,12 @@ def scale_effects(problem: FitProblem, optimum: BestFit, options: FitOptions) ->
     """
     space = problem.space
     values = space.to_values(optimum.point)
-    powers = np.array([_POWERS[kind.linear] if kind is not None else (0.0, 0.0) for kind in space.kinds])
+    powers = np.array(
+        [
+            _OF_UNITS.get(unit, (0.0, 0.0)) if kind is None else _POWERS[kind.linear]
+            for kind, unit in zip(space.kinds, space.units, strict=True)
+        ]
+    )
     follows = all(isinstance(e.value, Free) or e.value == 0.0 for e in problem.rig.device.elements())
     follows = follows and not any(e.record.fixture_mass for e in problem.experiments)
     rows, relative = [], np.zeros(len(space.names))

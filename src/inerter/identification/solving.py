@@ -13,8 +13,9 @@ from inerter.errors import IdentificationError
 from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import Experiment, experiment_of, transient_samples
 from inerter.identification.fit import NormalisedResidual
+from inerter.identification.friction_models import quadratic_damping
 from inerter.identification.hypotheses import Hypothesis
-from inerter.identification.initial_estimate import chain_of, guess_of, sign_of
+from inerter.identification.initial_estimate import Chain, chain_of, guess_of, sign_of
 from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, profiles, robust_cost, steps_of
 from inerter.identification.models import is_rigid
 from inerter.identification.noise import noise_whitening, uniform_whitening, whitening_of
@@ -72,12 +73,17 @@ def solve(
     simulated.
     """
     chain = chain_of(rig.device)
+    _check_law(asked, chain)
     whole, findings = [], []
     for number, record in enumerate(records):
         report("smoothing of records", number, len(records))
         turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead, is_rigid(rig.device)))
         whole.append(turned)
         findings += found_of_sign
+    if chain is not None and asked.quadratic_damping:
+        fastest = max(float(np.abs(e.motion.velocity).max()) for e in whole)
+        peak = max(float(np.abs(e.record.force).max()) for e in whole)
+        assumed = (*assumed, quadratic_damping(chain, fastest, peak))
     problem = FitProblem(
         rig, space_of(rig, assumed), _without_validation_part(whole, asked.check), [], asked.offset, assumed
     )
@@ -111,6 +117,15 @@ def solve(
         scales=scale_effects(problem, optimum, asked),
         noisy=decided_by_noise(problem, optimum, found, asked.seed),
     )  # fmt: skip
+
+
+def _check_law(asked: FitOptions, chain: Chain | None) -> None:
+    """Raise `IdentificationError` for a quadratic damping of a device that is not a chain."""
+    if asked.quadratic_damping and chain is None:
+        raise IdentificationError(
+            "quadratic_damping: the model must be an inerter, alone or with friction or a damper in parallel, in "
+            "series with at most a shaft and a gap, such as (ks | cs) - gap - (b | f | c)."
+        )
 
 
 def _simulation_error(problem: FitProblem) -> IdentificationError:

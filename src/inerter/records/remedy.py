@@ -33,6 +33,7 @@ class Action(StrEnum):
     DISPLACEMENT_SCALE = "displacement-scale"
     FIT_DELAY = "fit-delay"
     FIT_OFFSET = "fit-offset"
+    FIT_QUADRATIC = "fit-quadratic"
 
 
 @dataclass(frozen=True)
@@ -79,4 +80,5 @@ _IN_PYTHON: Mapping[Action, Callable[[Any], str]] = {
     Action.DISPLACEMENT_SCALE: lambda value: f"displacement_scale={value!r}",
     Action.FIT_DELAY: lambda value: "delay=True",
     Action.FIT_OFFSET: lambda value: "offset=True",
+    Action.FIT_QUADRATIC: lambda value: "quadratic_damping=True",
 }

@@ -8,6 +8,7 @@ from math import isnan
 
 from inerter.files.identification.running import IdentificationResult
 from inerter.formatting import format_quantity, format_range, format_with_interval
+from inerter.identification.friction_models import QUADRATIC_DAMPING
 from inerter.networks.elements import Element, Free, Tied
 from inerter.networks.parser import format_expression
 
@@ -69,6 +70,9 @@ def elements_block(found: IdentificationResult) -> str:
     keys = max(len(name) for name in rows)
     values = max(len(value) for value, _ in rows.values())
     lines = [f"# {found.name}, identified from {_format_sources(found)}"]
+    if QUADRATIC_DAMPING in found.fit.parameters:
+        value, interval = value_and_interval(found, QUADRATIC_DAMPING)
+        lines.append(f"# without its quadratic damping, {value} ({interval}), which no element has")
     lines.append("[elements]")
     lines += [f"{name:<{keys}} = {value:<{values}}  # {remark}" for name, (value, remark) in rows.items()]
     return "\n".join([*lines, "", "[layouts]", f'device = "{expression}"'])

@@ -55,4 +55,5 @@ _OPTIONS: Mapping[Action, Callable[[Any], str]] = {
     Action.DISPLACEMENT_SCALE: lambda value: f'--displacement-scale "{value}"',
     Action.FIT_DELAY: lambda value: f"delay = true in [fit] {_CONFIG}",
     Action.FIT_OFFSET: lambda value: f"offset = true in [fit] {_CONFIG}",
+    Action.FIT_QUADRATIC: lambda value: f"quadratic_damping = true in [fit] {_CONFIG}",
 }

@@ -16,6 +16,7 @@ from inerter.files.identification.loading import CUSTOM, IdentificationRequest
 from inerter.files.identification.sections import RecordRequest
 from inerter.identification.choice import Candidate, select_model
 from inerter.identification.fit import Fit, RecordFit
+from inerter.identification.friction_models import QUADRATIC_DAMPING
 from inerter.identification.hypotheses import DELAY, GAIN
 from inerter.identification.identify import identify
 from inerter.identification.models import VISCOUS, with_mount
@@ -180,6 +181,8 @@ def responses(found: IdentificationResult) -> Responses:
     if not measured.omega.size:
         return Responses(None, notes=measured.notes)
     notes, model, linear = list(measured.notes), None, None
+    if QUADRATIC_DAMPING in values:
+        notes.append("The responses of the model are without its quadratic damping.")
     try:
         model = model_response(found.fit.device, records)
         notes += [note for note in model.notes if note not in notes]

@@ -152,6 +152,9 @@ class FitSettings:
     lead: float | None = key(not_negative("s"), "Initial part of each record that is not fitted.", default=None)
     force_scale: Uncertain | None = key(_SCALE, "Factor of the force readings.", default=None)
     displacement_scale: Uncertain | None = key(_SCALE, "Factor of the displacement readings.", default=None)
+    quadratic_damping: bool = key(
+        YES_OR_NO, "Whether a damping that grows with the square of the speed is fitted too.", default=False
+    )
 
 
 def _record(**values: Any) -> RecordRequest:

@@ -239,7 +239,7 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.ASYMMETRIC: _law_remedy,
     Suspect.RIPPLE: _law_remedy,
     Suspect.PRESLIDING: _law_remedy,
-    Suspect.QUADRATIC: _law_remedy,
+    Suspect.QUADRATIC: _constant("estimate it too, with ", Remedy(Action.FIT_QUADRATIC)),
     Suspect.STIFFENING: _law_remedy,
     Suspect.SECOND_GAP: _law_remedy,
     Suspect.SATURATION: _constant("reduce the motion, or state the range of the load cell to exclude such samples"),

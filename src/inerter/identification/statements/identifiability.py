@@ -84,7 +84,7 @@ _CAUSES = {
 
 def _cause(i: Identifiability) -> str:
     if i.role is None:
-        return "The records contain too little information on the sensor."
+        return "The records contain too little information on it."
     if i.held is not None:
         what = "It never slipped" if i.role is LinearRole.OPEN else "The friction in parallel with it never slipped"
         return f"{what}, under forces of up to {format_quantity(i.held, 'N')}; excite with larger or faster motion."

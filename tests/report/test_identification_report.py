@@ -23,6 +23,7 @@ from inerter.identification.fit import Explanation, Localisation, NormalisedResi
 from inerter.identification.friction_models import law_hypotheses
 from inerter.identification.hypotheses import Hypothesis
 from inerter.identification.initial_estimate import chain_of
+from inerter.identification.statements.causes import Suspect
 from inerter.identification.statements.findings import FitFinding
 from inerter.identification.statements.identifiability import Identifiability, Verdict
 from inerter.identification.statements.patterns import MisfitPattern
@@ -220,7 +221,7 @@ def test_nothing_is_said_of_values_that_are_not_there(found: IdentificationResul
         for text in (identification_text(doubted), Page(identification_page(doubted, {})).text):
             told = " ".join(text.split())
             assert ("113 kg" in told.partition("Estimates Parameter")[0].partition("Parameters")[0]) == sound
-            assert "use the values under this hypothesis, where" in told
+            assert ("estimate it too" if one.name is Suspect.QUADRATIC else "use the values under this") in told
             assert "above" not in told.partition("records")[0]
     assert len(proposed) == 6
 

@@ -78,7 +78,7 @@ _OFFERS: Mapping[Action, Callable[[Any], Offer]] = {
     Action.FIT_QUADRATIC: _switch("Estimate the quadratic damping too", "fit", "quadratic_damping"),
     Action.DETREND: _switch("Remove the drift", "record", "detrend"),
     Action.GAPS: _switch("Interpolate the missing samples", "record", "gaps"),
-    Action.REPAIR: _switch("Interpolate those samples", "record", "repair"),
+    Action.REPAIR: _switch("Repair the record", "record", "repair"),
     Action.FORCE_BANDWIDTH: _setting("Bandwidth of the load cell", "record", "force_bandwidth", "300 Hz"),
     Action.FIXTURE_MASS: _setting("Fixture mass", "record", "fixture_mass", "0.3 kg"),
     Action.FORCE_SCALE: _setting("Scale of the force", "fit", "force_scale", "1 +- 1 %"),

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.signal import bilinear, lfilter
 
 from inerter.identification.experiment import Experiment, experiment_of, load_cell_output
@@ -23,6 +24,7 @@ from inerter.identification.statements.patterns import MisfitPattern
 from inerter.records.instants import Instant
 from inerter.records.record import Record
 from inerter.records.repair import faulty_instants, repair
+from inerter.records.slower_channels import slower_channel
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -184,9 +186,10 @@ def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothe
 
 
 def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
-    """Spikes and held values, interpolated; and joints, closed and not compared for a while."""
+    """Readings alone; spikes and held values, interpolated; and joints, closed and not compared for a while."""
     found = [(e, faulty_instants(e.record)) for e in experiments]
-    rows: list[Hypothesis] = []
+    slower = _at_readings(experiments)
+    rows = [] if slower is None else [slower]
     kinds = ((Suspect.SPIKES, "spikes"), (Suspect.HELD, "held"))
     for name, kind in kinds:
         marked = {id(e.record): [i for role in getattr(f, kind).values() for i in role] for e, f in found}
@@ -198,6 +201,40 @@ def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
             _repair_hypothesis(Suspect.JOINED, experiments, joints, lambda r: _close_joints(r, joints[id(r)]), None)
         )
     return rows
+
+
+def _at_readings(experiments: Sequence[Experiment]) -> Hypothesis | None:
+    """Channels that were read at a lower rate, between whose readings nothing is compared; None without such a channel.
+
+    A spline goes through the readings of the displacement.
+    """
+    whole: dict[int, Experiment] = {}
+    read_at: dict[int, Mask] = {}
+    channels: list[tuple[str, int, str]] = []
+    for e in experiments:
+        record = e.record
+        moved, forced = slower_channel(record.displacement), slower_channel(record.force)
+        channels += [(n, s.every, s.way) for n, s in (("displacement", moved), ("force", forced)) if s is not None]
+        if moved is not None:
+            times = record.time[moved.readings]
+            through = CubicSpline(times, record.displacement[moved.readings])(np.clip(record.time, times[0], times[-1]))
+            mended = experiment_of(record.with_notes(displacement=through), rigid=e.rigid)
+            whole[id(record)] = replace(mended, record=record, kept=e.kept, tally=e.tally)
+        if forced is not None:
+            mask = np.zeros(e.size, dtype=bool)
+            mask[forced.readings] = True
+            read_at[id(record)] = mask
+
+    def change_motion(e: Experiment, values: Values) -> Experiment:
+        return whole.get(id(e.record), e)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        mask = read_at.get(id(e.record))
+        return force if mask is None else np.where(mask[: force.size], force, e.record.force[: force.size])
+
+    named = {"channels": tuple(dict.fromkeys(channels))}
+    hypothesis = Hypothesis(Suspect.SLOWER, change_motion=change_motion, read=read, details=lambda values: named)
+    return hypothesis if channels else None
 
 
 def _repair_hypothesis(

@@ -53,6 +53,7 @@ class RecordFinding(StrEnum):
     SWAPPED = "swapped"
     SPIKES = "spikes"
     HELD = "held"
+    SLOWER = "slower-channel"
     JOINED = "joined"
     HIDDEN_JITTER = "hidden-jitter"
     CLOCK_DRIFT = "clock-drift"
@@ -135,6 +136,15 @@ def _held_values_text(f: Finding) -> Text:
         f"samples, the first at {format_quantity(n['first'], 's')}: the recorder missed samples and held the last one. "
         f"Use ",
         *(Remedy(Action.REPAIR), ", or ", Remedy(Action.TRIM), " these intervals away."),
+    )
+
+
+def _slower_channel_text(f: Finding) -> Text:
+    n = f.numbers
+    return (
+        f"The {f.about} was measured at one sample in {n['every']} only, and {n['way']} in between. Record both "
+        f"channels at one rate, or keep the measured samples alone, ",
+        *(Remedy(Action.REPAIR), "."),
     )
 
 
@@ -368,6 +378,7 @@ _TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
     RecordFinding.SWAPPED: _swapped_columns_text,
     RecordFinding.SPIKES: _spikes_text,
     RecordFinding.HELD: _held_values_text,
+    RecordFinding.SLOWER: _slower_channel_text,
     RecordFinding.JOINED: _joint_text,
     RecordFinding.HIDDEN_JITTER: _hidden_jitter_text,
     RecordFinding.CLOCK_DRIFT: _clock_drift_text,

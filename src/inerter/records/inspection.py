@@ -17,6 +17,7 @@ from inerter.records.instants import Instant
 from inerter.records.record import UNIFORM, Record
 from inerter.records.repair import faulty_instants
 from inerter.records.saturation import plateaus, saturated_samples
+from inerter.records.slower_channels import slower_channel
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 from inerter.records.spectral_lines import isolated_line
 from inerter.statements import Severity, by_severity
@@ -33,9 +34,9 @@ PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more oft
 def findings(record: Record) -> list[Finding]:
     """Findings of a record, the most severe first.
 
-    Inspects the sampling and its clock, samples that were dropped, held or replaced by spikes, joints between pieces,
-    the amplitude, noise, resolution, clipping, offset and drift of the channels, swapped columns, mains hum and other
-    spectral lines, the sign of the force and its delay.
+    Inspects the sampling and its clock, samples that were dropped, held or replaced by spikes, channels that were
+    measured at a lower rate, joints between pieces, the amplitude, noise, resolution, clipping, offset and drift of the
+    channels, swapped columns, mains hum and other spectral lines, the sign of the force and its delay.
     """
     found = [
         *_count(record),
@@ -48,6 +49,7 @@ def findings(record: Record) -> list[Finding]:
     if Severity.ERROR not in by_severity(found):
         found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record), *_instants(record)]
         if record.uniform:
+            found += _slower_channels(record)
             found += _motion_findings(record, smooth_displacement(record))
     return [finding for group in by_severity(found).values() for finding in group]
 
@@ -143,6 +145,16 @@ def _instant_summary(record: Record, instants: list[Instant]) -> dict[str, float
         "first": float(record.time[instants[0].start]),
         "largest": max((i.size for i in instants), key=abs),
     }
+
+
+def _slower_channels(record: Record) -> list[Finding]:
+    """Channels that were read at a lower rate than that of the record."""
+    slower = {role: slower_channel(getattr(record, role)) for role in ("displacement", "force")}
+    return [
+        Finding(RecordFinding.SLOWER, Severity.WARNING, role, {"every": found.every, "way": found.way})
+        for role, found in slower.items()
+        if found is not None
+    ]
 
 
 def _filled_samples(record: Record) -> list[Finding]:

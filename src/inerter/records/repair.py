@@ -11,6 +11,7 @@ from inerter.records.dropouts import find_dropouts
 from inerter.records.gaps import fill_missing_values
 from inerter.records.instants import Instant, held_value_instants, joint_instants, mask_of, spike_instants
 from inerter.records.record import Record
+from inerter.records.slower_channels import at_readings
 
 Mask = NDArray[np.bool_]
 _ROLES = ("displacement", "force")
@@ -76,7 +77,11 @@ def _least_spike(record: Record) -> float:
 
 
 def repair(record: Record) -> Record:
-    """The record with spikes and held values interpolated by cubic splines; joints between pieces are kept."""
+    """The record at the readings of its slower channels, with spikes and held values interpolated by cubic splines.
+
+    Joints between pieces are kept.
+    """
+    record = at_readings(record)
     faulty = faulty_instants(record)
     changes, notes = {}, []
     for role in _ROLES:

@@ -121,7 +121,9 @@ class RecordRequest:
     start: float | None = key(_ANY_TIME, "Start of the part that is used.", default=None)
     stop: float | None = key(_ANY_TIME, "End of the part that is used.", default=None)
     resample: float | None = key(positive("s"), "New sampling interval: the record is resampled.", default=None)
-    repair: bool = key(YES_OR_NO, "Whether spikes and held values are interpolated.", default=False)
+    repair: bool = key(
+        YES_OR_NO, "Whether spikes and held values are interpolated, and slower channels thinned.", default=False
+    )
     detrend: bool = key(YES_OR_NO, "Whether a linear trend is removed.", default=False)
 
 

@@ -45,6 +45,7 @@ class Suspect(StrEnum):
     CHANGED_DEVICE = "changed device"
     SPIKES = "spikes"
     HELD = "held values"
+    SLOWER = "channel at a lower rate"
     JOINED = "joined pieces"
     BEYOND_BOUNDS = "value beyond the bounds"
 
@@ -148,6 +149,13 @@ def _second_gap_text(d: Details) -> str:
     return f"a second gap closes in the shaft at a deflection of {slack}, beyond which it is stiffer by {more}"
 
 
+def _slower_channels_text(d: Details) -> str:
+    return " and ".join(
+        f"the {role} was measured at one sample in {every} only, and {way} in between"
+        for role, every, way in d["channels"]
+    )
+
+
 def _always(said: str) -> Callable[[Details], str]:
     return lambda details: said
 
@@ -199,6 +207,7 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
     Suspect.CHANGED_DEVICE: _changed_device_text,
     Suspect.SPIKES: lambda d: f"spikes replace samples at {_places_text(d)}",
     Suspect.HELD: lambda d: f"the recorder held values at {_places_text(d)}",
+    Suspect.SLOWER: _slower_channels_text,
     Suspect.JOINED: lambda d: f"the record is joined from pieces of different runs at {_places_text(d)}",
     Suspect.BEYOND_BOUNDS: _beyond_bounds_text,
 }
@@ -250,6 +259,9 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),
     Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
     Suspect.HELD: _constant("interpolate those samples, ", Remedy(Action.REPAIR)),
+    Suspect.SLOWER: _constant(
+        "record both channels at one rate, or keep the measured samples alone, ", Remedy(Action.REPAIR)
+    ),
     Suspect.JOINED: _constant("fit each piece as a separate record, ", Remedy(Action.TRIM)),
     Suspect.BEYOND_BOUNDS: _constant("give the value wider bounds in the elements of the model"),
 }

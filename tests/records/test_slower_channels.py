@@ -1,0 +1,104 @@
+"""Channels that were measured at a lower rate than that of the record: found, thinned, named in fits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from campaigns import sampled
+from numpy.typing import NDArray
+from quick_fits import explained, quick_fit
+
+import inerter as it
+from inerter.identification.models import MODELS
+from inerter.identification.statements.causes import Suspect
+from inerter.records.inspection import findings
+from inerter.records.repair import repair
+from inerter.records.slower_channels import slower_channel
+
+Vector = NDArray[np.float64]
+RATE, SIZE = 200.0, 1201  # [Hz], samples
+INERTANCE, DAMPING = 80.0, 300.0  # [kg], [N s/m]
+TIME = np.arange(SIZE) / RATE
+TONES = ((2e-3, 1.3, 0.4), (7e-4, 3.7, 2.0), (3e-4, 6.1, 4.0))  # [m], [Hz], [rad]
+
+
+def moved(order: int) -> Vector:
+    """A derivative of the motion."""
+    return np.asarray(
+        sum(a * np.real((2j * np.pi * f) ** order * np.exp(1j * (2 * np.pi * f * TIME + p))) for a, f, p in TONES)
+    )
+
+
+def slower(values: Vector, way: str, every: int, first: int = 0) -> Vector:
+    at = np.arange(SIZE)
+    if way == "held":
+        return values[np.maximum((at - first) // every * every + first, 0)]
+    return np.asarray(np.interp(at, at[first::every], values[first::every]))
+
+
+def record(way: str = "", every: int = 4, channel: str = "displacement") -> it.Record:
+    """An ideal inerter beside a damper, of which one channel may be slower."""
+    random = np.random.default_rng(5)
+    force = INERTANCE * moved(2) + DAMPING * moved(1)
+    channels = {
+        "displacement": moved(0) + 1e-7 * random.standard_normal(SIZE),
+        "force": force + 2e-3 * float(np.std(force)) * random.standard_normal(SIZE),
+    }
+    if way:
+        channels[channel] = slower(channels[channel], way, every)
+    return it.Record(TIME, **channels)
+
+
+@pytest.mark.parametrize("way", ["held", "interpolated"])
+@pytest.mark.parametrize(("every", "first", "step"), [(2, 1, 0.0), (3, 0, 1e-5), (7, 4, 0.0), (5, 2, 1e-6)])
+def test_readings_are_found(way: str, every: int, first: int, step: float) -> None:
+    random = np.random.default_rng(every)
+    values = moved(0) + 2e-6 * random.standard_normal(SIZE)
+    values = slower(step * np.rint(values / step) if step else values, way, every, first)
+    found = slower_channel(np.array([float(f"{v:.9g}") for v in values]))  # as a file has it
+    assert found is not None
+    assert (found.first, found.every, found.way) == (first, every, way)
+
+
+NATURAL = {
+    "noise": np.random.default_rng(1).standard_normal(SIZE),
+    "steps of an encoder": 1e-5 * np.rint(1e5 * moved(0)),
+    "an encoder at constant speed": 1e-6 * np.floor(np.arange(SIZE) / 4.0),
+    "a triangular motion": np.abs((TIME * 0.8) % 1.0 - 0.5),
+    "rest, then motion": np.where(TIME < 3.0, 0.0, moved(1)),
+    "few bits": 1e-3 * np.rint(1e3 * moved(0)),
+    "a smooth signal": moved(0),
+}
+
+
+@pytest.mark.parametrize("name", NATURAL)
+def test_other_channels_have_the_rate_of_their_record(name: str) -> None:
+    assert slower_channel(NATURAL[name]) is None
+
+
+@pytest.mark.parametrize(
+    ("way", "channel"),
+    sampled([(w, c) for c in ("force", "displacement") for w in ("interpolated", "held")], [("interpolated", "force")]),
+)
+def test_a_fit_names_the_slower_channel_also_where_noise_may_hide_it(way: str, channel: str) -> None:
+    read = record(way, channel=channel)
+    told = [f for f in findings(read) if f.kind == "slower-channel"]
+    assert [f.about for f in told] == [channel]
+    assert f"measured at one sample in 4 only, and {way}" in told[0].sentence
+    solution = quick_fit(read, MODELS["ideal-viscous"], {"b": INERTANCE, "c": DAMPING})
+    found, _ = explained(solution)
+    assert found[0].name is Suspect.SLOWER
+    assert found[0].explained > 0.5
+
+
+@pytest.mark.parametrize("way", ["held", "interpolated"])
+def test_a_repaired_record_has_readings_alone_and_gives_the_values(way: str) -> None:
+    read = repair(record(way))
+    assert read.time.size == 301
+    np.testing.assert_array_equal(read.force, record().force[::4])
+    solution = quick_fit(read, MODELS["ideal-viscous"], {"b": INERTANCE, "c": 1.3 * DAMPING})
+    space, best = solution.problem.space, solution.optimum
+    errors = dict(zip(space.names, best.errors * space.slopes(best.point), strict=True))
+    for name, true in (("b", INERTANCE), ("c", DAMPING)):
+        assert abs(space.values_by_name(best.point)[name] - true) < 4.0 * errors[name]
+    assert repair(read).time.size == read.time.size

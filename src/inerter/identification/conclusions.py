@@ -115,15 +115,23 @@ def _main_cause(fit: Fit) -> Explanation | None:
 
 
 def _misfit_finding(fit: Fit, best: Explanation | None) -> Finding:
-    """Finding of a wrong model or sensor."""
+    """Finding of a wrong model or sensor: the likeliest cause, or what to try where no tested one is likely."""
     explained = 100.0 * max(fit.variance_explained, 0.0) if fit.variance_explained < ENOUGH else None
     as_good = [e for e in fit.explanations[1:] if e.misfit.is_noise_limited][:_OTHERS]
     patterns = [pattern for place in fit.localisations for pattern in place.patterns[:1]]
     where = max(patterns, key=lambda pattern: float(pattern.numbers["share"]), default=None)
+    sampled = min(map(_samples_in_a_period, fit.comparisons))
     numbers = {
         "times": fit.misfit.worst, "explained": explained, "likeliest": best, "as_good": as_good, "where": where,
+        "sampled": sampled,
     }  # fmt: skip
     return Finding(FitFinding.MISFIT, Severity.WARNING, numbers=numbers)
+
+
+def _samples_in_a_period(c: RecordFit) -> float:
+    """Samples in a period of the motion, of which the mean squares of velocity and acceleration say how fast it is."""
+    velocity, acceleration = c.experiment.motion.velocity[c.fitted], c.experiment.motion.acceleration[c.fitted]
+    return 2.0 * math.pi * float(np.std(velocity)) / max(float(np.std(acceleration)), 1e-300) / c.record.interval
 
 
 def _offset_findings(

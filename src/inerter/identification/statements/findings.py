@@ -9,6 +9,8 @@ from inerter.formatting import format_alike, format_number, format_quantity, for
 from inerter.records.finding import Finding
 from inerter.records.remedy import Action, Remedy, Text
 
+_FEW = 10.0  # samples in a period of a motion, below which it may be interpolated less exactly than it is read
+
 
 class FitFinding(StrEnum):
     """The kinds of findings in an identification."""
@@ -68,14 +70,28 @@ def _misfit_text(f: Finding) -> Text:
     share = "" if explained is None else f", and the variance explained is only {format_number(explained, 3)} %"
     if n["likeliest"] is None:
         where = "" if n["where"] is None else f", but {n['where'].sentence}"
-        return (f"{times}{share}; no tested cause accounts for it{where}",)
+        return (f"{times}{share}; no tested cause accounts for it{where}. {_trial_text(f)}",)
     others = ", or ".join(e.sentence for e in n["as_good"])
     other = f"; equally likely: {others}" if others else ""
     return (f"{times}{share}; most likely cause: {n['likeliest'].sentence}{other}",)
 
 
+def _trial_text(f: Finding) -> str:
+    """What to try where no cause of a misfit is known."""
+    if f.numbers["sampled"] < _FEW:
+        return (
+            f"The motion has only some {format_number(f.numbers['sampled'], 2)} samples in a period, between which "
+            f"errors of interpolation may exceed the noise: sample it faster, or move more slowly"
+        )
+    return (
+        "Fit other models and parts of the record, and repeat the test at another amplitude: where the estimates "
+        "differ, the model lacks a law"
+    )
+
+
 def _saturation_text(f: Finding) -> Text:
-    return (f"the load cell was saturated in {format_share(f.numbers['share'], 2)} of the samples",)
+    share = format_share(f.numbers["share"], 2)
+    return (f"the load cell was saturated in {share} of the samples; reduce the motion",)
 
 
 def _reversed_force_text(f: Finding) -> Text:

@@ -42,9 +42,11 @@ def adopt_renamed(given: object, **new_names: str) -> None:
 
     For classes of other distributions, which may have been written for the previous version.
     """
-    kind = type(given)
+    kind, own = type(given), getattr(given, "__dict__", {})
     for old, new in new_names.items():
-        places = chain((getattr(given, "__dict__", {}),), map(vars, kind.__mro__))
+        if new in vars(kind) and old not in own:
+            continue
+        places = chain((own,), map(vars, kind.__mro__))
         nearest = next((one for one in places if new in one or old in one), {new: None})
         if new not in nearest and not isinstance(nearest[old], RenamedAttribute):
             warn_renamed(f"{kind.__name__}.{old}", new, 4)

@@ -164,12 +164,17 @@ def typed_fields_of(kind: type) -> tuple[TypedField, ...]:
 
 def mounts_of(kind: type) -> tuple[str, ...]:
     """Names of the mounted networks of a dataclass, in the order of its fields."""
-    return tuple(one.name for one in _declarations(kind, _MOUNT))
+    return _mount_names(kind)
 
 
 def needed_mounts_of(kind: type) -> tuple[str, ...]:
     """Names of the required networks of a dataclass, in the order of its fields."""
-    return tuple(one.name for one in _declarations(kind, _MOUNT) if one.needed)
+    return _mount_names(kind, needed=True)
+
+
+@cache
+def _mount_names(kind: Any, needed: bool = False) -> tuple[str, ...]:
+    return tuple(one.name for one in _declarations(kind, _MOUNT) if one.needed or not needed)
 
 
 @cache

@@ -306,7 +306,8 @@ def _is_method(given: object) -> bool:
 def _check_names(mechanism: Mechanism, definition: IndexDefinition) -> None:
     driven = definition.drive.excited_mechanism(mechanism)
     check_inputs(driven, inputs_of(definition.input_paths(driven)), PerformanceIndexError)
-    unusual = [weighted.output for weighted in definition.outputs if weighted.output not in main_outputs(driven)]
+    usual = main_outputs(driven)
+    unusual = [weighted.output for weighted in definition.outputs if weighted.output not in usual]
     if unusual:  # finding all names takes longer than most norms
         known = outputs(driven, full_graph(driven))
         for name in unusual:

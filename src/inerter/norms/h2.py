@@ -158,8 +158,9 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
     """
     A, scale = balance(system.A)
     n = len(A)
-    into, out = (np.ones(size) for size in fine.values.shape)
-    into[:n], out[:n] = scale, scale
+    rows, columns = fine.values.shape
+    into, out = np.ones(rows), np.ones(columns)
+    into[:n] = out[:n] = scale
     units: Any = out / into[:, None]  # powers of two
     values, errors = fine.values * units, fine.errors * units
     fine_A, fine_B, fine_C = values[:n, :n], values[:n, n:], values[n:, :n]
@@ -236,7 +237,7 @@ def _covariance(A: Matrix, fine: tuple[Matrix, Matrix], drift: _Drift | None) ->
 
 def _adjoint(solver: _Solver, A: Matrix, row: Matrix, drift: _Drift | None) -> Matrix:
     """Q of `_squares` for one output."""
-    goal = np.outer(row, row)
+    goal = row[:, None] * row
     if drift is None:
         return solver.solve(goal, adjoint=True)
     Q = np.zeros_like(A)

@@ -103,8 +103,7 @@ def balance(A: Matrix) -> tuple[Matrix, Matrix]:
     """
     if A.shape[0] == 0:
         return A, np.ones(0)
-    with np.errstate(invalid="ignore", over="ignore"):
-        balanced, _, _, scale, _ = scipy.linalg.lapack.dgebal(A, scale=1, permute=0)
+    balanced, _, _, scale, _ = scipy.linalg.lapack.dgebal(A, scale=1, permute=0)
     return np.asarray(balanced, dtype=float), np.asarray(scale, dtype=float)
 
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache, partial
+from functools import cache, cached_property, lru_cache, partial
 from itertools import accumulate, pairwise
 from math import prod
 from typing import Any
@@ -209,7 +209,7 @@ def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix
         return right, np.zeros(right.shape)
     size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
     scaled, right = S / size, right / size
-    _, _, inverse, singular = scipy.linalg.lapack.dgesv(scaled.astype(float), np.eye(len(S)))
+    _, _, inverse, singular = scipy.linalg.lapack.dgesv(scaled.astype(float), _identity(len(S)))
     if singular:
         return np.zeros_like(right), np.full(right.shape, np.inf)
     solved = step = inverse.dot(right.astype(float)).astype(np.longdouble)
@@ -219,6 +219,11 @@ def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix
         step = inverse.dot((right - scaled.dot(solved)).astype(float))
         solved = solved + step
     return solved, np.abs(step) + rounding
+
+
+@cache
+def _identity(n: int) -> Matrix:
+    return np.eye(n)
 
 
 def exact_functions(

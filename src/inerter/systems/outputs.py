@@ -129,8 +129,10 @@ def _motions(mechanism: Mechanism, coordinate: Coordinate | TrackedPoint) -> tup
     """Motions of a coordinate or point available as outputs: on moving ground only accelerations, and none of a node
     without mass.
     """
-    port = {coordinate.name: 1.0} if isinstance(coordinate, Coordinate) else coordinate.port
-    has_mass = not any(c.is_massless and port.get(c.name) for c in mechanism.coordinates)
+    if isinstance(coordinate, Coordinate):
+        has_mass = not coordinate.is_massless
+    else:
+        has_mass = not any(c.is_massless and coordinate.port.get(c.name) for c in mechanism.coordinates)
     over_ground = () if mechanism.ground_moves and not coordinate.angle else _OVER_GROUND
     return (*over_ground, *(what for what in _MOTIONS if what not in _OVER_GROUND and has_mass))
 

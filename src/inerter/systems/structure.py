@@ -16,6 +16,7 @@ from inerter.networks.elements import CombinedNetwork, Element, Free, Network, T
 from inerter.networks.transform import map_elements
 from inerter.systems.graph import Graph, linear_graph
 from inerter.vehicle.mechanism import Mechanism, Port
+from inerter.vehicle.vehicle import remember_last
 
 Values = list[float | Free]
 _Answer = TypeVar("_Answer")
@@ -64,6 +65,7 @@ class Structure:
         return mechanism, replace(graph, branches=branches)
 
 
+@remember_last
 def structure_of(mechanism: Mechanism) -> Structure | None:
     """The structure of a mechanism; None where it depends on values, as for elements of other laws or tied values."""
     values: Values = []

@@ -275,7 +275,8 @@ class Mechanism:
 
     def free_values(self) -> dict[str, Free]:
         """Free values by name: those of networks in order of appearance, then masses."""
-        values = [*(element.value for element in self.elements()), *(c.inertia for c in self.coordinates)]
+        values = [element.value for mount in self.mounts() for element in mount.network.elements()]
+        values += [coordinate.inertia for coordinate in self.coordinates]
         return {str(value.name): value for value in values if isinstance(value, Free)}
 
     def units(self) -> dict[str, str]:

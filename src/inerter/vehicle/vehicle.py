@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import wraps
 from itertools import chain
-from typing import Any, ClassVar, Protocol, Self
+from typing import Any, ClassVar, Protocol, Self, TypeVar
 
 from inerter.errors import DesignError, MechanismError
 from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
@@ -16,6 +16,9 @@ from inerter.networks.transform import check_named_apart, name_free_values, with
 from inerter.notebook import shown_by
 from inerter.validation import check_positive, is_number
 from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
+
+_Asked = TypeVar("_Asked")
+_Answer = TypeVar("_Answer")
 
 
 class Vehicle(Protocol):
@@ -74,7 +77,7 @@ class VehicleModel:
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
         if "mechanism" in vars(cls):
-            cls.mechanism = _remember_last(cls.mechanism)  # type: ignore[assignment,method-assign]
+            cls.mechanism = remember_last(cls.mechanism)  # type: ignore[assignment,method-assign]
 
     def __post_init__(self) -> None:
         name_free_quantities(self, f"the {self.key.replace('-', ' ')}")
@@ -84,9 +87,8 @@ class VehicleModel:
 
     def networks(self) -> dict[str, Network]:
         """Networks by mount name; optional mounts only where present."""
-        given = {name: getattr(self, name) for name in mounts_of(type(self))}
-        left_out = {name for name in given.keys() - {*needed_mounts_of(type(self))} if given[name] is None}
-        return {name: check_network(network) for name, network in given.items() if name not in left_out}
+        given, needed = [(name, getattr(self, name)) for name in mounts_of(type(self))], needed_mounts_of(type(self))
+        return {name: check_network(network) for name, network in given if network is not None or name in needed}
 
     def mechanism(self) -> Mechanism:
         """The same vehicle as a `Mechanism`."""
@@ -104,19 +106,19 @@ class VehicleModel:
         return replace(self, **fixed)
 
 
-def _remember_last(build: Callable[[Any], Mechanism]) -> Callable[[Any], Mechanism]:
-    """`build` that keeps the last mechanism it made, since analyses of a vehicle need it several times in a row."""
-    last: tuple[object, Mechanism] | None = None
+def remember_last(answer: Callable[[_Asked], _Answer]) -> Callable[[_Asked], _Answer]:
+    """A function that keeps its last answer, since analyses of a vehicle need it several times in a row."""
+    last: tuple[_Asked, _Answer] | None = None
 
-    @wraps(build)
-    def mechanism(self: Any) -> Mechanism:
+    @wraps(answer)
+    def remember(asked: _Asked) -> _Answer:
         nonlocal last  # both together, so that threads see one or the other
         known = last
-        if known is None or known[0] is not self:
-            known = last = self, build(self)
+        if known is None or known[0] is not asked:
+            known = last = asked, answer(asked)
         return known[1]
 
-    return mechanism
+    return remember
 
 
 class Stage(ABC):

@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, settings
 import inerter
 from inerter.kernels.decorators import Kernel
 from inerter.kernels.prepare import prepare
+from inerter.work.chunks import THREADS
 
 collect_ignore_glob = ["conftest.py", "*/conftest.py"]  # as modules with doctests: two cannot have one name
 
@@ -58,6 +59,15 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if item.get_closest_marker("marathon") is not None:
             item.own_markers = [mark for mark in item.own_markers if mark.name != "campaign"]
     items.sort(key=lambda item: item.get_closest_marker("timeout") is None)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """In campaigns a process has one thread, as there is one for each core: two took an eighth more of its time.
+
+    Other tests have as many as the machine has cores.
+    """
+    THREADS.set(1 if item.get_closest_marker("campaign") else None)
 
 
 @pytest.fixture

@@ -33,15 +33,12 @@ def test_one_low_frequency_gives_no_value_of_an_elastic_device_that_noise_decide
 
 
 @pytest.mark.campaign
-def test_one_tone_without_the_bandwidth_of_the_load_cell_gives_no_wrong_value() -> None:
+def test_one_tone_without_the_bandwidth_of_the_load_cell_gives_no_value() -> None:
     """A delay is then a fourth unknown: with it a shaft a hundredth as stiff fits as well, by its noise."""
     rig = RIG.run(it.cosine(6e-4, 2.3), 3.0)
-    fit = it.identify(it.Record(rig.time, rig.displacement, rig.force), "elastic")
-    for name in filter(fit.identifiable.get, TRUTH):
-        low, high = fit.parameters[name].interval
-        assert low <= TRUTH[name] <= high, name
-    assert not fit.identifiable["ks"]
-    assert not fit.identifiable["sensor delay"]
+    fit = it.identify(it.Record(rig.time, rig.displacement, rig.force), "elastic", starts=8)
+    assert "sensor delay" in fit.identifiable
+    assert not any(fit.identifiable.values())
 
 
 def test_one_tone_is_told_from_two_and_from_a_sweep() -> None:
@@ -54,7 +51,7 @@ def test_one_tone_is_told_from_two_and_from_a_sweep() -> None:
     assert tones_of(experiment_of(RIG.run(tone + it.cosine(3e-4, 3.4) + it.cosine(2e-4, 6.1), 3.0))) is None
 
 
-@pytest.mark.campaign
+@pytest.mark.marathon
 def test_four_unknowns_of_one_tone_have_no_values() -> None:
     """Two equations; which of all solutions fits best, the noise decides."""
     device = (it.Spring(7.7e4) | it.Damper(2300.0)) - it.Inerter(17.0)

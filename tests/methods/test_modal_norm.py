@@ -60,7 +60,7 @@ def test_they_are_the_norms_with_states_for_filters(name):
 LIGHT = ["half J3", "half Wk", "half J3 with an approximant", "half Wk with an approximant"]
 
 
-@pytest.mark.parametrize("name", sampled(LIGHT, [LIGHT[2]]))
+@pytest.mark.parametrize("name", sampled(LIGHT, [LIGHT[2]], [LIGHT[3]]))
 def test_they_are_right_to_a_billionth_where_damping_is_light(name):
     car, index, *conventions = QUESTIONS[name]
     objective, points = it.Norm(*conventions).objective(car, index), draw(car, 12, 7)

@@ -15,7 +15,7 @@ from inerter.files.common.folder import WriteMode, open_results
 from inerter.files.common.toml import tables_of
 from inerter.files.identification.loading import identification_of
 from inerter.files.identification.running import IdentificationResult, read, run_identification
-from inerter.report.identification import OWN, write_fit, write_identification
+from inerter.report.identification import RESULT_NAMES, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import unreliability_reason
 from inerter.report.identified_values import elements_block, value_and_interval
@@ -34,7 +34,7 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
     for number, path in enumerate(records):
         tell(number, len(records), f"reading {path.name}")
         readings.append(read(path, request.record))
-    with open_results(WriteMode(folder / RESULTS, "identify", OWN, tuple(records))) as results:
+    with open_results(WriteMode(folder / RESULTS, "identify", RESULT_NAMES, tuple(records))) as results:
         found = run_identification(readings, request, lambda part: tell(round(1000.0 * part), 1000, "fitting"))
         write_fit(found, results.draft)
         results.publish()

@@ -24,7 +24,7 @@ from inerter.files.identification.running import FIT, read, run_identification
 from inerter.files.identification.sections import RecordRequest, channel_units, gap_treatment
 from inerter.records.finding_texts import QUESTIONABLE
 from inerter.records.uncertain import Uncertain, parse_uncertain
-from inerter.report.identification import OWN, write_fit, write_identification
+from inerter.report.identification import RESULT_NAMES, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import identification_text
 from inerter.report.options import as_options
@@ -72,7 +72,7 @@ def identify(
                 say(f"{reading.used.source}: {as_options(finding.text)}")
     folder = output or Path(f"{paths[0].stem}-results")
     inputs = (*paths, *(() if config is None else (config,)))
-    intent = WriteMode(folder, "identify", OWN, inputs, force=force)
+    intent = WriteMode(folder, "identify", RESULT_NAMES, inputs, force=force)
     kept = [" before there was a fit."]
     try:
         with interruptible(lambda: kept[-1]), workers(cluster) as executor, open_results(intent) as results:

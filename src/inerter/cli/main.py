@@ -20,8 +20,8 @@ from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.atomic_io import remove_temporary_folders
 from inerter.cli.interrupts import came, heed, interruptible, tell
 from inerter.cli.options import (
-    OWN,
-    UNCHANGED,
+    DEFAULT_WORK,
+    NO_CLUSTER,
     AtCondition,
     BestFor,
     ClusterOptions,
@@ -33,7 +33,7 @@ from inerter.cli.options import (
     SweepPoint,
 )
 from inerter.cli.pulse import alive
-from inerter.cli.reading import AS_THEY_ARE, AS_USUAL, ReadingOptions, SearchOptions
+from inerter.cli.reading import DEFAULT_READING, DEFAULT_SEARCH, ReadingOptions, SearchOptions
 from inerter.cli.streams import endure, problem, say
 from inerter.errors import InerterError, StudyError, WorkError
 from inerter.statements import INTERRUPTED, Statement, exit_code
@@ -76,7 +76,7 @@ def run(
     study: Path,
     /,
     *,
-    options: LongWork = UNCHANGED,
+    options: LongWork = DEFAULT_WORK,
 ) -> tuple[Statement, ...]:
     """Optimise all layouts of a study file, and write tables, figures and a report.
 
@@ -103,7 +103,7 @@ def search(
     study: Path,
     /,
     *,
-    options: LongWork = UNCHANGED,
+    options: LongWork = DEFAULT_WORK,
 ) -> tuple[Statement, ...]:
     """Find the best network: optimise every network that the free networks of a study file may be, and rank them.
 
@@ -290,10 +290,10 @@ def identify(
             help="Identification file (TOML) with [record], [model], [elements] and [fit]; options take precedence."
         ),
     ] = None,
-    reading: Reading = AS_THEY_ARE,
-    search: Searching = AS_USUAL,
+    reading: Reading = DEFAULT_READING,
+    search: Searching = DEFAULT_SEARCH,
     output: Output = None,
-    cluster: ClusterOptions = OWN,
+    cluster: ClusterOptions = NO_CLUSTER,
     force: Force = False,
     json: Json = False,
 ) -> tuple[Statement, ...]:

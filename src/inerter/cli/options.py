@@ -40,7 +40,7 @@ class Cluster:
         return tuple(word for option, value in given if value is not None for word in (option, str(value)))
 
 
-OWN = Cluster()
+NO_CLUSTER = Cluster()
 ClusterOptions = Annotated[Cluster, Parameter(name="*")]
 Resume = Annotated[
     bool,
@@ -70,7 +70,7 @@ class WorkOptions:
 
     output: Output = None
     jobs: Jobs = None
-    cluster: ClusterOptions = OWN
+    cluster: ClusterOptions = NO_CLUSTER
     resume: Resume = False
     force: Force = False
     json: Json = False
@@ -90,7 +90,7 @@ class WorkOptions:
         return f"; completed results are kept. Continue with: {again}"
 
 
-UNCHANGED = WorkOptions()
+DEFAULT_WORK = WorkOptions()
 LongWork = Annotated[WorkOptions, Parameter(name="*")]
 ForceFile = Annotated[bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")]
 BestFor = Annotated[str | None, Parameter(help="Index for which designs are best, if values are free.")]

@@ -52,7 +52,7 @@ class ReadingOptions:
     ] = None
 
 
-AS_THEY_ARE = ReadingOptions()
+DEFAULT_READING = ReadingOptions()
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class SearchOptions:
     ] = None
 
 
-AS_USUAL = SearchOptions()
+DEFAULT_SEARCH = SearchOptions()
 
 
 def time_interval(option: str, text: str) -> tuple[float | None, float | None]:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import App, Parameter
 
-from inerter.cli.options import UNCHANGED, LongWork
+from inerter.cli.options import DEFAULT_WORK, LongWork
 from inerter.errors import StudyError
 from inerter.papers.registry import PAPERS
 from inerter.statements import Statement
@@ -36,7 +36,7 @@ def reproduce(
         tuple[Part, ...],
         Parameter(negative="", show_default=False, help="Part to reproduce; repeatable; default: all parts."),
     ] = (),
-    options: LongWork = UNCHANGED,
+    options: LongWork = DEFAULT_WORK,
 ) -> tuple[Statement, ...]:
     """Recompute a published paper and compare it with the printed numbers, designs, figures and claims.
 
@@ -49,7 +49,7 @@ def reproduce(
     from inerter.cli.commands import reproduce as command
 
     if paper is None:
-        if only or options != UNCHANGED:
+        if only or options != DEFAULT_WORK:
             raise StudyError(f"Got options without a paper; expected the name of one: {', '.join(PAPERS)}.")
         papers()
         return ()

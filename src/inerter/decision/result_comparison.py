@@ -1,4 +1,4 @@
-"""Two folders of results of `inerter run`: entries that differ, and values that do beyond their errors."""
+"""Comparison of two folders of results: entries of the studies, and values that differ beyond their errors."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from inerter.statements import Severity, Statement
 _EQUAL = 2e-9  # relative difference of equally good values
 _COMMON = ("layout", "index", "method")
 _VARIABLES = ("value", "standard_error", "error_bound", "status", "parameter_value", "parameter_low", "parameter_high")
-_NOT_ASKED = {"title"}  # entries of a study that change no number
+_WITHOUT_EFFECT = {"title"}  # entries of a study that change no number
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ class ResultComparison(Statement):
 
     @property
     def severity(self) -> Severity:
-        """Warning where the results differ, so that the exit code tells."""
+        """Warning where the results differ, which sets the exit code."""
         return Severity.WARNING if self.changes or self.only_first or self.only_second else Severity.INFO
 
 
@@ -183,7 +183,7 @@ def _entry_changes(first: Path, second: Path) -> Iterator[EntryChange]:
         entries.append(dict(_flat(load_study(folder / RESOLVED).to_tables())))
     for place in dict.fromkeys([*entries[0], *entries[1]]):
         one, two = (of.get(place) for of in entries)
-        if one != two and place not in _NOT_ASKED:
+        if one != two and place not in _WITHOUT_EFFECT:
             yield EntryChange(place, one, two)
 
 

@@ -415,7 +415,7 @@ class CompiledNorm:
 
 
 def kernels_of(definition: IndexDefinition) -> tuple[Any, ...]:
-    """The compiled code that values of the question and their gradients call, whatever the vehicle."""
+    """The compiled code that values of the index and their gradients call, whatever the vehicle."""
     if definition.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
     coherence = getattr(road_of(definition.drive), "coherence", None)

@@ -166,7 +166,7 @@ class HarmonicBalance:
 def harmonic_balance(mechanism: Mechanism, definition: IndexDefinition) -> HarmonicBalance:
     """The balance for a peak gain.
 
-    Raises `PerformanceIndexError` if the question does not go from one force to one output or says no amplitude.
+    Raises `PerformanceIndexError` unless the index is of one output from one force with an amplitude.
     """
     check_peak_gain(definition)
     if definition.amplitude is None:

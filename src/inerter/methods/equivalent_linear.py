@@ -71,7 +71,7 @@ def _without_damper(mount: Strut | Tyre) -> list[Element]:
 
 @dataclass(frozen=True, eq=False)
 class EquivalentLinearModel:
-    """A question put to a mechanism whose frictions are dampers still to be chosen."""
+    """Linear problem of an index of a mechanism whose frictions are dampers, for any r.m.s. velocities across them."""
 
     problem: LinearProblem
     parts: Equivalent

@@ -26,7 +26,7 @@ def road_errors(
 ) -> tuple[ErrorSource, ...]:
     """Errors of an index of r.m.s. values on a road with a measured shape; none on any other.
 
-    `system` has the outputs of the question over white noise, with these `norms`. The road as it was measured, with the
+    `system` has the outputs of the index over white noise, with these `norms`. The road as it was measured, with the
     densities of its bands in the place of the line, gives another value: that is the error by the line. What lies
     beyond the waves that were measured may be missing, or twice as much, the longer ones and the shorter ones each.
     All three are shared by all values on the road.

@@ -1,4 +1,4 @@
-"""Indices of a vehicle with one network in question, compiled for any network in its place.
+"""Indices of a vehicle with one network left open, compiled for any network in its place.
 
 A mechanism enters as polynomials (`systems.network_port`) that are found once, a network as a list of operations on
 polynomials (`kernels.network_polynomials`), so that nothing is built or compiled for each network.
@@ -320,15 +320,15 @@ def index_over_strut(vehicle: Vehicle, index: Index) -> IndexOverNetwork | None:
         if structure is None or not isinstance(definition, Hashable):
             found = network_index(probed, definition, PLACE)
         else:
-            found = _remembered_index(_Question(structure, tuple(structure.values), definition))
+            found = _remembered_index(_OpenIndex(structure, tuple(structure.values), definition))
     except InerterError:  # for an output of an element of the strut
         return None
     return None if found is None else found.over(network)
 
 
 @dataclass(frozen=True)
-class _Question:
-    """A mechanism with a network in question, by its structure and values, and an index of it."""
+class _OpenIndex:
+    """Index definition of a mechanism with one network left open, by its structure and values."""
 
     structure: Structure
     values: tuple[float | Free, ...]
@@ -336,8 +336,8 @@ class _Question:
 
 
 @lru_cache(maxsize=64)
-def _remembered_index(question: _Question) -> NetworkIndex | None:
-    return network_index(question.structure.mechanism, question.definition, PLACE)
+def _remembered_index(wanted: _OpenIndex) -> NetworkIndex | None:
+    return network_index(wanted.structure.mechanism, wanted.definition, PLACE)
 
 
 _remembered: Any = lru_cache(64)(index_over_strut)  # designs of one layout may come in parts

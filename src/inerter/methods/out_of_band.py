@@ -73,7 +73,7 @@ _FEW = 3  # periods after which a motion with play must repeat, or the period is
 
 @dataclass(frozen=True, eq=False)
 class OnRoads:
-    """A design and a question, on roads of one length.
+    """A design and the definition of an index, on random roads of one length.
 
     `frictions` names the velocities across its frictions, `play` the travels of mounts with an element that no damper
     represents, such as a gap.
@@ -128,7 +128,7 @@ class OutOfBandContribution:
 def on_roads(
     system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, seed: int, period: int | None = None
 ) -> OnRoads:
-    """A question put to a system on roads of this `period` [s]; without, of the usual length or of a longer one."""
+    """An index of a system on roads of this `period` [s]; by default of the usual length, or longer where needed."""
     excitation = random_excitation(system, definition, conventions, period)
     check_held_roads(system, excitation)
     if excitation.hold is not None:

@@ -110,7 +110,7 @@ class RoadRun:
 def random_excitation(
     system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, period: int | None = None
 ) -> RandomExcitation:
-    """Random excitation of `system` by `question`, with realisations of the default length or of `period` [s].
+    """Random excitation of `system` by an index, with realisations of the default length or of `period` [s].
 
     What is held under some conventions is a road that is the same for all wheels.
     """

@@ -38,7 +38,7 @@ class StaticStiffness:
     response = "force per displacement at rest"
 
     def constituents(self, vehicle: Vehicle) -> Sequence[tuple[Vehicle, Index]]:
-        """No question; raises `PerformanceIndexError` if nothing is mounted under the name."""
+        """No constituents; raises `PerformanceIndexError` if nothing is mounted under the name."""
         self._network(vehicle.mechanism())
         return []
 

@@ -39,7 +39,7 @@ from inerter.statements import Severity, by_severity
 from inerter.work.origin import versions
 
 RESPONSE = "response.json"
-OWN = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
+RESULT_NAMES = (FIT, RESIDUALS, RESPONSE, f"{FIGURES}/", REPORT)
 _HEADINGS = {Severity.ERROR: "Errors", Severity.WARNING: "Warnings", Severity.INFO: "Good to know"}
 _MOST_FIGURES = 5  # of one record, and two of all
 

@@ -209,7 +209,7 @@ def _is_stable(descending: list[Fraction]) -> bool:
     return True
 
 
-@lru_cache(maxsize=64)  # an index is asked for its question again and again
+@lru_cache(maxsize=64)  # the definition of an index is made again and again
 def _transfer_function(system: LinearSystem) -> tuple[list[Fraction], list[Fraction]]:
     """Numerator and denominator, the highest power first: from c A^k b, and from the traces of the powers of A."""
     n = system.order

@@ -62,7 +62,7 @@ class Graph:
     notes: tuple[str, ...]
 
 
-_last: tuple[Mechanism, Graph] | None = None  # several questions about one design come one after the other
+_last: tuple[Mechanism, Graph] | None = None  # several analyses of one design follow each other
 
 
 def linear_graph(mechanism: Mechanism) -> Graph:

@@ -1,4 +1,4 @@
-"""One design of a study with numbers only: the best one for an index, from a result folder or found anew."""
+"""One design of a study with numbers only: the best one for an index, from a result folder or by a search."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class PartResult(ABC):
     """The result of a part; a frozen dataclass whose fields survive JSON."""
 
     of: ClassVar[type[StudyPart[Any]]]  # whose labels are fields here too
-    sure: ClassVar[tuple[str, ...]] = (StatusKind.OK.value,)  # kinds of status that answer the question
+    sure: ClassVar[tuple[str, ...]] = (StatusKind.OK.value,)  # kinds of status with a result
 
     layout: str
     message: str
@@ -54,7 +54,7 @@ class PartResult(ABC):
 
     @property
     def ok(self) -> bool:
-        """Whether the status is one that answers the question."""
+        """Whether the status is one with a result."""
         return self.kind in self.sure
 
     @property

@@ -22,7 +22,7 @@ def name_problems(study: Study) -> Iterator[Problem]:
         formed = own.typed_settings
         named = [((key, *one.keys), one) for key, form, value in formed for one in form.named(value)]
         sized = [((key, *one.keys), one) for key, form, value in formed for one in form.sized(value)]
-        asked = _layout_questions(study, name) if named or sized else []
+        asked = _definitions_by_layout(study, name) if named or sized else []
         if not asked:
             continue
         for keys, one in named:
@@ -33,7 +33,7 @@ def name_problems(study: Study) -> Iterator[Problem]:
             yield from _of_size(("indices", name, *keys), size, *asked[0])
 
 
-def _layout_questions(study: Study, name: str) -> list[tuple[Mechanism, IndexDefinition]]:
+def _definitions_by_layout(study: Study, name: str) -> list[tuple[Mechanism, IndexDefinition]]:
     """Mechanism and index definition for each layout; empty if one cannot be built, which is reported elsewhere."""
     try:
         mechanisms = [study.design(layout).mechanism() for layout in study.layouts]

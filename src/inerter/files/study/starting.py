@@ -37,7 +37,7 @@ _JOINED = "# Networks: | in parallel, - in series (binds tighter), brackets grou
 _MOST_ASKED = 3
 _PARTS = (  # a quarter car, part by part
     "",
-    "[vehicle.coordinates]                     # What moves, each with its mass",
+    "[vehicle.coordinates]                     # Degrees of freedom, each with its mass",
     'body = "250 kg"',
     'wheel = "35 kg"',
     "",

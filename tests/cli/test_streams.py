@@ -101,7 +101,7 @@ def test_results_are_written_where_a_command_writes_any(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    monkeypatch.setattr("inerter.cli.main.problem", lambda: full)
+    monkeypatch.setattr("inerter.cli.main.output_error", lambda: full)
     for arguments in (["check", str(EXAMPLES / "quarter-car.toml")], ["--help"], ["run", "--help"], ["--version"]):
         assert call(arguments) == 1
         assert capsys.readouterr().err == "inerter: standard output: No space left on device.\n"

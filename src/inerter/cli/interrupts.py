@@ -1,4 +1,4 @@
-"""Ctrl-C as one exception, wherever it arrives, and an end soon after it, whatever stands in its way."""
+"""Ctrl-C: KeyboardInterrupt wherever it arrives, and the end of the process soon after it in any case."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from typing import Any
 from inerter.cli.streams import say
 from inerter.statements import INTERRUPTED
 
-_PATIENCE = 1.2  # [s] that work has to put its things away
+_PATIENCE = 1.2  # [s] for the work to clean up
 _kept: list[Callable[[], str]] = []
 _came, _told = threading.Event(), threading.Event()
 
@@ -46,27 +46,27 @@ def interruptible(kept: Callable[[], str] = lambda: "") -> Iterator[None]:
         _kept.pop()
 
 
-def heed() -> None:
+def install_interrupt_handler() -> None:
     """Install the handler by which Ctrl-C raises KeyboardInterrupt, and soon ends the process if it still runs."""
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as it is for work in the background
         signal.signal(signal.SIGINT, _interrupt)
         sys.unraisablehook = _unraisable
 
 
-def tell(kept: object = "") -> None:
+def say_interrupted(kept: object = "") -> None:
     """Say once that the work was interrupted, and what is kept of it, in words as of `interruptible`."""
     if not _told.is_set():
         _told.set()
         say(f"interrupted{str(kept) or '.'}")
 
 
-def came() -> bool:
+def was_interrupted() -> bool:
     """Whether Ctrl-C was pressed."""
     return _came.is_set()
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    if not came():
+    if not was_interrupted():
         _came.set()
         threading.Thread(target=_end_soon, daemon=True).start()
     raise KeyboardInterrupt
@@ -82,11 +82,11 @@ def _end_soon() -> None:
     for process in active_children():
         process.kill()
     remove_temporary_folders()
-    tell(_kept[-1]() if _kept else "")
+    say_interrupted(_kept[-1]() if _kept else "")
     os._exit(INTERRUPTED)
 
 
 def _unraisable(problem: Any) -> None:
-    """An interrupt where Python can only report it, and not raise it, is not worth a word: the end comes anyway."""
+    """Report an exception that cannot be raised, unless it is an interrupt: the process ends soon anyway."""
     if not issubclass(problem.exc_type, KeyboardInterrupt):
         sys.__unraisablehook__(problem)

@@ -18,7 +18,7 @@ from cyclopts import App, CycloptsError, Parameter
 from inerter import __version__
 from inerter.app.serve import LIMIT, RECORD_LIMIT
 from inerter.atomic_io import remove_temporary_folders
-from inerter.cli.interrupts import came, heed, interruptible, tell
+from inerter.cli.interrupts import install_interrupt_handler, interruptible, say_interrupted, was_interrupted
 from inerter.cli.options import (
     DEFAULT_WORK,
     NO_CLUSTER,
@@ -34,7 +34,7 @@ from inerter.cli.options import (
 )
 from inerter.cli.pulse import alive
 from inerter.cli.reading import DEFAULT_READING, DEFAULT_SEARCH, ReadingOptions, SearchOptions
-from inerter.cli.streams import endure, problem, say
+from inerter.cli.streams import output_error, say
 from inerter.errors import InerterError, StudyError, WorkError
 from inerter.statements import INTERRUPTED, Statement, exit_code
 
@@ -527,8 +527,7 @@ app.command(
 
 def main() -> int:
     """Run the command line of this process; returns its exit code, unless Ctrl-C ends it."""
-    endure()
-    heed()
+    install_interrupt_handler()
     try:
         with alive():
             code = call(sys.argv[1:])
@@ -536,7 +535,7 @@ def main() -> int:
         code = INTERRUPTED
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if came():
+    if was_interrupted():
         remove_temporary_folders()
         os._exit(code)  # compiled code that was cut short may not survive the interpreter's own end
     return code
@@ -548,12 +547,12 @@ def call(arguments: list[str]) -> int:
         with interruptible():
             statements = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
         sys.stdout.flush()
-        if (lost := problem()) is not None:
+        if (lost := output_error()) is not None:
             written = " The results are written all the same." if _writes(arguments) else ""
             return _fail(WorkError(f"standard output: {lost.strerror}.{written}"))
         return exit_code(statements or ())
     except KeyboardInterrupt as error:
-        tell(error)
+        say_interrupted(error)
         return INTERRUPTED
     except CycloptsError as error:
         from inerter.cli.wrong_arguments import argument_sentence
@@ -565,8 +564,8 @@ def call(arguments: list[str]) -> int:
     except OSError as error:
         return _fail(WorkError(f"{error.filename or 'system'}: {error.strerror or error}"))
     except Exception:
-        if came():  # some library made another error of it
-            tell()
+        if was_interrupted():  # some library made another error of it
+            say_interrupted()
             return INTERRUPTED
         raise
 

@@ -7,7 +7,7 @@ import os
 import signal
 import sys
 
-from inerter.cli.streams import endure
+from inerter.cli.streams import replace_standard_streams
 from inerter.statements import INTERRUPTED
 from inerter.work.own_process import leave, look_for_garbage_seldom
 
@@ -16,7 +16,7 @@ def main() -> None:
     """Run the command line."""
     if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # as it is for work in the background
         signal.signal(signal.SIGINT, _stop)
-    endure()
+    replace_standard_streams()
     look_for_garbage_seldom()
     codes: list[int] = []
     atexit.register(_leave, codes)  # before all that others register: it is called after them

@@ -1,4 +1,4 @@
-"""Standard output and error that take any text and never stop the work: not when closed, nor when nobody reads them."""
+"""Standard output and error that accept any text and never stop the work, even if closed or if the reader is gone."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
-_raw: dict[str, _Enduring] = {}
+_raw: dict[str, _TolerantStream] = {}
 
 
-class _Enduring(io.FileIO):
-    """Takes whatever is written; what it could not pass on is remembered."""
+class _TolerantStream(io.FileIO):
+    """Stream that accepts all data; `problem` is the first error of writing."""
 
     problem: OSError | None = None
 
@@ -26,10 +26,10 @@ class _Enduring(io.FileIO):
             return memoryview(data).nbytes
 
 
-def endure() -> None:
+def replace_standard_streams() -> None:
     """Replace the standard streams of the process, once.
 
-    A closed one is opened to nowhere: a file that is opened later would otherwise get its number, and what is printed.
+    A closed one is opened to the null device: a file that is opened later would otherwise receive what is printed.
     """
     if _raw:
         return
@@ -40,7 +40,7 @@ def endure() -> None:
             os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
     for number, name in ((1, "stdout"), (2, "stderr")):
         before = getattr(sys, name)
-        raw = _raw[name] = _Enduring(number, "wb", closefd=False)
+        raw = _raw[name] = _TolerantStream(number, "wb", closefd=False)
         stream = io.TextIOWrapper(
             io.BufferedWriter(raw),
             encoding=getattr(before, "encoding", "utf-8"),
@@ -50,12 +50,12 @@ def endure() -> None:
         setattr(sys, name, stream)
 
 
-def problem() -> OSError | None:
+def output_error() -> OSError | None:
     """Reason why standard output could not be written, although a reader was connected."""
     found = _raw["stdout"].problem if "stdout" in _raw else None
     return None if isinstance(found, BrokenPipeError) else found
 
 
 def say(message: str) -> None:
-    """Message on standard error, at once."""
+    """Print a message to standard error, at once."""
     print(f"inerter: {message}", file=sys.stderr, flush=True)

@@ -13,7 +13,7 @@ from inerter.decision.of_study import nonlinear_elements
 from inerter.decision.results import Improvement, percent_below
 from inerter.errors import StatusKind
 from inerter.files.study.parts import FAILURES
-from inerter.files.study.speeds import BESIDE, asks_at_one_speed, quick_method, value_at_speed
+from inerter.files.study.speeds import BESIDE, is_at_one_speed, quick_method, value_at_speed
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import capital, format_list, format_percent_size, format_quantity, format_share
 from inerter.indices.names import title_with_name
@@ -297,7 +297,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
 def _speeds(asked: MarginRequest) -> Iterator[SpeedMargin]:
     """Improvements at other speeds; none where speed is not a property of the study."""
     study = asked.study
-    if not asks_at_one_speed(study) or not study.needs_road(asked.index) or study.road is None:
+    if not is_at_one_speed(study) or not study.needs_road(asked.index) or study.road is None:
         return
     method = _quick_method(asked, has_friction=any(part.acts for part in asked.design.mechanism().strut_elements()))
     for factor in BESIDE:

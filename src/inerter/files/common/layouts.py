@@ -157,7 +157,7 @@ def network_problems(place: tuple[str, ...], expression: str, elements: Mapping[
         yield at(place, str(error))
 
 
-def chosen_layout(section: str, layout: str, known: Collection[str]) -> Iterator[Problem]:
+def layout_choice_problems(section: str, layout: str, known: Collection[str]) -> Iterator[Problem]:
     """Problem of the layout named in a section: missing where several exist, or unknown."""
     layouts = some(known)
     if not layout:

@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError
-from inerter.files.common.layouts import chosen_layout, layout_problems
+from inerter.files.common.layouts import layout_choice_problems, layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.signal_kinds import SIGNALS
@@ -43,7 +43,7 @@ def rig_of(tables: Mapping[str, Any], path: Path) -> RigRequest:
     signal = signal_of(path, {Rig.moved: "m"}, found["signal"])
     problems = [
         *layout_problems(elements, layouts),
-        *chosen_layout("rig", chosen, tuple(layouts)),
+        *layout_choice_problems("rig", chosen, tuple(layouts)),
         *_signal_problems(signal),
     ]
     if problems:

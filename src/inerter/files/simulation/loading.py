@@ -8,7 +8,7 @@ from typing import Any
 
 from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError, SimulationError
-from inerter.files.common.layouts import chosen_layout, layout_problems
+from inerter.files.common.layouts import layout_choice_problems, layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.roads import ROAD_QUANTITIES, MeasuredLine, line_through, track_problems, without_source
@@ -66,7 +66,7 @@ def _names(request: SimulationRequest) -> Iterator[Problem]:
     """Problems of the vehicle and its layouts, and of unknown names."""
     yield from vehicle_problems(request.vehicle)
     yield from layout_problems(request.elements, request.layouts)
-    yield from chosen_layout("simulation", request.layout, tuple(request.layouts))
+    yield from layout_choice_problems("simulation", request.layout, tuple(request.layouts))
     moved, known = request.signal.input, inputs(request.vehicle)
     if moved not in known:
         hint = nearest(moved, known)

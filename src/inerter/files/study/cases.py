@@ -14,7 +14,7 @@ import numpy as np
 from inerter.errors import Status, StatusKind, worst_of
 from inerter.files.study.limits import all_limits, limit_results
 from inerter.files.study.parts import FAILURES, PartResult, StudyPart, run_part
-from inerter.files.study.speeds import asks_at_one_speed, at_other_speeds
+from inerter.files.study.speeds import at_other_speeds, is_at_one_speed
 from inerter.files.study.study import Study
 from inerter.methods.compare import controls_of
 from inerter.methods.method import AveragingMethod, Estimate, evaluate
@@ -194,7 +194,7 @@ def _run(whole: Study, case: Case, threads: int) -> Outcome:
     estimates = _estimates(study, case, best, threads)
     own = {method: by_index[case.index] for method, by_index in estimates.items()}
     has_controls = study.baseline is not None and not whole.sweeps
-    asks_speeds = asks_at_one_speed(whole) and np.isfinite(own[study.evaluate[0]].value)
+    asks_speeds = is_at_one_speed(whole) and np.isfinite(own[study.evaluate[0]].value)
     notes = _notes(study, best.vehicle, own)
     speeds, speed_message = at_other_speeds(study, best.vehicle, case.layout, case.index) if asks_speeds else ({}, "")
     return Outcome(

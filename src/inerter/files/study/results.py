@@ -20,7 +20,7 @@ from inerter.files.study.limits import each_of, is_swept, limit_text
 from inerter.files.study.method_labels import limit_basis, method_labels
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
-from inerter.files.study.speeds import BESIDE, asks_at_one_speed
+from inerter.files.study.speeds import BESIDE, is_at_one_speed
 from inerter.files.study.study import Study
 from inerter.methods.compare import Comparison, compare_estimates
 from inerter.methods.measured_road_errors import ROAD_ERRORS
@@ -278,7 +278,7 @@ def _variables_of(study: Study) -> dict[str, _Variable]:
     return {
         **values,
         **(LIMITED if study.limits else {}),
-        **(SPEEDS if asks_at_one_speed(study) else {}),
+        **(SPEEDS if is_at_one_speed(study) else {}),
         **(_conditions_of(values) if study.conditions else {}),
     }
 
@@ -303,7 +303,7 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
         labels["limit_unit"] = ("limit", [limit.unit for limit in study.limits])
         labels["limit.words"] = ("limit", [limit_text(study, *one) for one in stated])
         labels["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
-    if study.road is not None and asks_at_one_speed(study):
+    if study.road is not None and is_at_one_speed(study):
         labels["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     if is_measured(study):
         labels[ROAD_ERROR] = list(ROAD_ERRORS)

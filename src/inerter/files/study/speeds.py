@@ -25,7 +25,7 @@ SPEED = "road.speed"
 BESIDE = (0.8, 1.0, 1.2)  # of the speed of the study
 
 
-def asks_at_one_speed(study: Study) -> bool:
+def is_at_one_speed(study: Study) -> bool:
     """Whether the study has a road at one speed, which no sweep or condition changes, and no quantile."""
     return study.road is not None and SPEED not in study.varied_labels and study.quantile is None
 
@@ -35,7 +35,7 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
 
     Both are empty where there is no need.
 
-    The study is one that `asks_at_one_speed`. At another speed the road is rougher or smoother, and no more, unless
+    The study is one that `is_at_one_speed`. At another speed the road is rougher or smoother, and no more, unless
     several axles meet it or the design has friction. A method that averages random roads is replaced by the quickest
     that sees as much friction. A value that cannot be computed, or takes more digits than double precision has, is
     nan, and the message says why.

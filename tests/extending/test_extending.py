@@ -500,6 +500,17 @@ def test_a_broken_distribution_is_one_sentence(case: str, study: Path, tmp_path:
     assert word in line
 
 
+def test_exports_may_be_the_first_registry_of_a_process(place: Path, tmp_path: Path) -> None:
+    """Their modules are imported before those of the distribution, which add to the exports while they are imported."""
+    program = """
+import inerter as it
+strut = it.Spring(60e3) | it.Damper(2e3, "c")
+print(it.export(it.QuarterCar(250.0, 35.0, 180e3, strut), to="parts-list"), it.EXPORTS["parts-list"].suffixes)
+"""
+    rows = "strut,element,value,unit\nstrut,k,60000.0,N/m\nstrut,c,2000.0,N s/m\n"
+    assert python(place, program, tmp_path) == f"{rows} ('.parts',)\n"
+
+
 def test_help_looks_for_no_distribution(tmp_path: Path) -> None:
     place = installed(tmp_path)
     (place / "inerter_extending" / "seated_car.py").write_text("1 / 0\n", encoding="utf-8")
@@ -512,7 +523,7 @@ def test_the_page_shows_every_file_whole() -> None:
     page = (HERE.parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
     shown = {block.partition("\n")[2] for block in page.split("```")[1::2]}
     files = [path for path in (HERE / "src").rglob("*.py") if path.name != "__init__.py"]
-    assert len(files) == 9
+    assert len(files) == 10
     for path in (HERE / "pyproject.toml", *files):
         assert path.read_text(encoding="utf-8") in shown, path.name
 

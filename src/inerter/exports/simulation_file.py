@@ -80,7 +80,7 @@ def _vehicle(vehicle: Vehicle, names: _ElementNames) -> tuple[Tables, Mapping[st
     """The table of a vehicle, and the networks of its mounts: as its model if files know it, else part by part."""
     if isinstance(vehicle, Seat):
         table, networks = _vehicle(vehicle.vehicle, names)
-        if SEAT not in table and table["model"] in (MECHANISM, *_DRIVEN):
+        if SEAT not in table and (table["model"] == MECHANISM or VEHICLES[table["model"]].moved == "road"):
             place = _port(vehicle.place, vehicle.vehicle.mechanism())
             return {
                 **table,
@@ -150,7 +150,6 @@ def _signal(table: Tables, *, shaken: bool) -> SignalRequest:
     return SignalRequest("sine", moved, values, None if unit == unit_of(moved) else unit)
 
 
-_DRIVEN = tuple(kind.key for kind in VEHICLES.values() if kind.moved == "road")  # models that may carry a seat
 SIMULATION = ExportKind(
     "simulation",
     "simulation file for inerter simulate, with friction and gaps",

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.deprecation import RenamedAttribute, adopt_renamed
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
+from inerter.formatting import format_quantity_in_table, typeset
 from inerter.indices.definition import Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import (
@@ -51,6 +52,8 @@ class Estimate:
     >>> found = it.evaluate(car, it.LoadCarrying(), it.Norm())
     >>> found.unit, found.status.ok, found.standard_error, found.value == found.peaks[0].gain
     ('m/N', True, None, True)
+    >>> print(found)
+    100.1 µm/N
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:estimate_html")
@@ -80,6 +83,11 @@ class Estimate:
     def shared_errors(self) -> dict[str, float]:
         """Relative effects, with their signs, of the errors of the road that all values on it share, by source."""
         return {source.name: source.shared for source in self.error_sources if source.shared}
+
+    def __str__(self) -> str:
+        error = nan if self.standard_error is None else self.standard_error
+        value = format_quantity_in_table(self.value, self.unit, error=error, bound=self.error_bound)
+        return typeset(value) if self.status.ok else f"{typeset(value)} ({self.status})"
 
 
 class FormerMethodNames:

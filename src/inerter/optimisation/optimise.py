@@ -13,8 +13,8 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import DesignError, InerterError, Status, StatusKind
-from inerter.formatting import format_alike
+from inerter.errors import OK, DesignError, InerterError, Status, StatusKind
+from inerter.formatting import format_alike, format_quantity, typeset
 from inerter.methods.compare import Comparison, Known, compare
 from inerter.methods.compiled_norm import CompiledNorm
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite, objective_of
@@ -74,6 +74,8 @@ class Optimum:
     (['c'], 'm/s^2', True)
     >>> best.design.free_values()
     {}
+    >>> print(best)
+    1.842 m/s² with c = 2.387 kN s/m; 8 of 8 starts converged
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:optimum_html")
@@ -91,6 +93,18 @@ class Optimum:
     limits: tuple[ConstraintResult, ...] = ()
     over_linear, agreed = RenamedAttribute("gain_over_linear"), RenamedAttribute("n_converged")
     starts = RenamedAttribute("n_starts")
+
+    def __str__(self) -> str:
+        units = {element.label: element.unit for element in self.design.mechanism().elements()}
+        values = [
+            f"{name} = {typeset(format_quantity(value, units.get(name, '')))}"
+            + (f" (at its {self.active_bounds[name]} bound)" if name in self.active_bounds else "")
+            for name, value in self.parameters.items()
+        ]
+        where = f" with {', '.join(values)}" if values else ""
+        doubt = "" if self.status.ok else f" ({self.status})"
+        value = replace(self.estimate, status=OK)
+        return f"{value}{where}; {self.n_converged} of {self.n_starts} starts converged{doubt}"
 
     @property
     def active_limits(self) -> tuple[str, ...]:

@@ -35,6 +35,8 @@ class ParetoFront:
     >>> front = it.pareto_front(car, [it.RideComfort(road), it.TyreLoad(road)], it.Norm(), points=3)
     >>> bool((front.ideal <= front.values).all()), front.values.shape  # designs x indices
     (True, (3, 2))
+    >>> print(front)
+    Pareto front of J1 and J3, 3 points from 1.842 m/s², 551.1 N to 1.846 m/s², 549.9 N
     """
 
     _repr_html_ = shown_by("inerter.report.notebook:front_html")
@@ -49,6 +51,14 @@ class ParetoFront:
     seed: int
     status: Status = OK
     estimates: tuple[tuple[Estimate, ...], ...] = ()
+
+    def __str__(self) -> str:
+        if not len(self.values):
+            return f"Pareto front without points ({self.status})"
+        first, last = (", ".join(map(str, self.estimates[i])) for i in (0, -1))
+        names = " and ".join(index.symbol for index in self.indices)
+        doubt = "" if self.status.ok else f" ({self.status})"
+        return f"Pareto front of {names}, {len(self.values)} points from {first} to {last}{doubt}"
 
     @property
     def ideal(self) -> Array:

@@ -176,7 +176,10 @@ class PerformanceOutputs:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """Any number of coordinates, struts, tyres, roads and forces.
+    """Any number of coordinates, struts, tyres, roads and forces; `measures` are the outputs of each index.
+
+    `points` have outputs of their own. `mirror`, `still` and `ground_moves` are set by `symmetric_half` and
+    `on_moving_ground`.
 
     Outputs by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, also of points; `<tyre>_load`,
     `<tyre>_deflection`; `<strut>_force`, `<strut>_travel`; `<coordinate>_relative_displacement` and

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from browser import Served, Visitor, step_slider_and
+from browser import HeldRequests, Served, Visitor, step_slider_and
 from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
@@ -38,11 +38,17 @@ def searches(served: Served) -> list[dict[str, Any]]:
 
 
 @pytest.fixture
-def searching(visitor: Visitor, tmp_path: Path) -> Visitor:
-    """A window with a study that has a free network."""
+def searchable(tmp_path: Path) -> Path:
+    """A study that has a free network."""
     path = tmp_path / "searched.toml"
     path.write_text(study_text(ASK, vehicle=PAPER_CAR, elements=ELEMENTS, layouts=LAYOUTS), encoding="utf-8")
-    visitor.open(path)
+    return path
+
+
+@pytest.fixture
+def searching(visitor: Visitor, searchable: Path) -> Visitor:
+    """A window with that study."""
+    visitor.open(searchable)
     visitor.wait_for_text("k | any")
     visitor.settled()
     return visitor
@@ -176,6 +182,45 @@ def test_a_car_of_two_struts_says_at_which_the_network_is_free_and_has_limits_in
     form.get_by_label("How much, with its unit").press("Enter")
     form.get_by_text("each tyre, at most").wait_for()
     page.wait_for_function(KEPT, arg=[["study", "subject_to"], {"J3": {"at_most": "850 N"}}])
+
+
+def test_a_button_that_is_pressed_while_a_study_is_being_opened_does_what_it_says(
+    visitor: Visitor, searchable: Path
+) -> None:
+    """The message that the study is open comes while it is pressed, and would move it away from the pointer."""
+    page = visitor.page
+    held = HeldRequests(visitor, "**/api/panel/mechanism")
+    visitor.open(searchable)
+    button = page.get_by_role("button", name="Search for the best network")
+    place = button.bounding_box()
+    page.mouse.move(place["x"] + 9, place["y"] + 3)
+    page.mouse.down()
+    held.end()
+    with page.expect_response("**/api/panel/optimise"):
+        for route in held.routes:
+            route.continue_()
+    page.wait_for_timeout(1000)  # in which the message comes
+    page.mouse.up()
+    page.locator("form.begin [name=layout]").wait_for()
+    page.wait_for_selector(f"text={searchable.name} is open")
+
+
+def test_the_form_of_a_search_goes_with_its_study(visitor: Visitor) -> None:
+    """What the library has said of the study before is not drawn of one that has no such layout."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "half-car.toml")
+    page.wait_for_selector("text=half-car.toml is open")
+    page.get_by_role("button", name="More networks").click()
+    form = page.locator("form.begin", has_text="Search for the best network")
+    form.get_by_role("button", name="at rear", exact=True).click()
+    form.locator("p.quiet", has_text="Free at rear.").wait_for()
+    held = HeldRequests(visitor, "**/api/study/parts")
+    visitor.open(EXAMPLES / "absorber.toml")
+    form.get_by_text("No layout has a free network.").wait_for()
+    held.end()
+    for route in held.routes:
+        route.continue_()
+    page.wait_for_selector("text=absorber.toml is open")
 
 
 def test_a_value_in_the_si_unit_is_shown_in_one_that_suits_it(visitor: Visitor) -> None:

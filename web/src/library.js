@@ -62,7 +62,8 @@ const isAmount = (entry) => typeof entry === "string" || typeof entry === "numbe
 export const elementsIn = (state, layout) => at(partsOf(state).layouts, layout)?.elements ?? [];
 
 /** The layouts with a free network, which a search chooses. @param {State} state @returns {string[]} */
-export const searchedLayouts = (state) => Object.keys(partsOf(state).layouts).filter((name) => isSearched(state, name));
+export const searchedLayouts = (state) => Object.keys(state.history.present.study.layouts ?? {})
+  .filter((name) => isSearched(state, name));
 
 /** Whether a layout has a free network, so that it is no design. @param {State} state @param {string} layout */
 export const isSearched = (state, layout) => (at(partsOf(state).layouts, layout)?.free_networks.length ?? 0) > 0;

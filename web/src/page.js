@@ -81,14 +81,18 @@ const ACTS = ["keydown", "click", "change", "submit"];
 const holdsChoice = ({ target }) =>
   target instanceof Element && target.matches("select, input[type=checkbox], input[type=radio]");
 
+const PRESSED = "button, summary, a, label";
+
 /** Draws the page whenever the state is another one, as soon as what happens is over, at most once a frame, so that
  * sixty steps of a slider draw what a screen can show. What a key or a button does is about what is drawn: what is due
  * comes before it, however late the frame is, but for a choice that a control already holds; and what it did is drawn
- * after it at once, before anything is typed into what is there no longer.
+ * after it at once, before anything is typed into what is there no longer. A button that is pressed stays where it is
+ * until it is released: with a message above it, it would be released beside it, and do nothing.
  * @param {Store} store @param {() => void} draw */
 export function keepDrawing(store, draw) {
   let due = true;
   let drawn = false; // since the last frame
+  let pressed = false;
   const now = () => {
     if (!due) return;
     due = false;
@@ -96,16 +100,24 @@ export function keepDrawing(store, draw) {
     drawn = true;
     draw();
   };
+  const unlessPressed = () => pressed || now();
   const next = () => {
     drawn = false;
-    now();
+    unlessPressed();
   };
   for (const act of ACTS) {
     addEventListener(act, (event) => holdsChoice(event) || now(), { capture: true });
     addEventListener(act, (event) => (holdsChoice(event) && act !== "change") || now());
   }
+  addEventListener("pointerdown", ({ target }) => {
+    pressed = target instanceof Element && target.closest(PRESSED) !== null;
+  }, { capture: true });
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => {
+    pressed = false;
+    setTimeout(now);
+  }, { capture: true });
   store.subscribe(() => {
-    if (!due && !drawn) setTimeout(now);
+    if (!due && !drawn) setTimeout(unlessPressed);
     due = true;
   });
   now();

@@ -8,7 +8,7 @@ import { isFreeNetwork, kindOf, quickMethod, searchedLayouts, treeOf } from "../
 import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf, strutTexts } from "../questions.js";
-import { entryAt, own, textOf } from "../state/document.js";
+import { entryAt, own, strutsOf, textOf } from "../state/document.js";
 import { estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn } from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indexAxis, indicesOf, percent } from "./answers.js";
@@ -114,7 +114,8 @@ export function SearchForm({ store }) {
  * @param {{state: State, layout: string}} props */
 function Where({ state, layout }) {
   const entry = own(state.history.present.study.layouts, layout);
-  const rows = (state.parts?.networks ?? []).filter(({ path }) => path[1] === layout && path.length > 2);
+  const rows = (state.parts?.networks ?? []).filter(({ path }) => path[1] === layout
+    && strutsOf(entry).includes(path[2]));
   const [free, others] = [true, false].map((is) => rows.filter(({ names = [] }) =>
     names.some((name) => isFreeNetwork(state, name)) === is).map(({ path }) => path[2]));
   return free.length > 0 && html`<p class="quiet">Free at ${strutWords(free)}${free.length > 1

@@ -22,6 +22,7 @@ from inerter.tasks.margins import (
     MarginRequest,
     _break_even,
     _break_even_by,
+    _speeds,
     _trials,
     compliant_springs,
     usual_tolerances,
@@ -127,6 +128,21 @@ def test_other_speeds_are_those_of_the_same_designs(told: dict[str, Any]) -> Non
         index = it.RideComfort(it.Road(study.road.roughness, one["factor"] * 25.0))  # type: ignore[union-attr]
         own, base = (it.evaluate(car(name), index, study.method(one["method"])).value for name in ("S3", "S1"))
         assert one["improvement_percent"] == pytest.approx(100.0 * (1.0 - own / base), rel=1e-9)
+
+
+def test_other_speeds_are_simulated_where_linearisation_is_not_sure() -> None:
+    """By the method of the decision, which the message of the linearisation would otherwise advise."""
+    document = changed(elements={"f": "200 N"}, study={"realisations": 2, "evaluate": ["expected-value"]})
+    study = study_from(document)
+    design, baseline = (study.design(name).with_values(VALUES[name]) for name in ("S3", "S1"))
+    found = list(_speeds(MarginRequest(study, "S3", design, "S1", baseline, "J1", "expected-value")))
+    assert [one.factor for one in found] == [0.8, 1.2]
+    for one in found:
+        index = it.RideComfort(it.Road(study.road.roughness, one.factor * 25.0))  # type: ignore[union-attr]
+        two = it.compare(design, baseline, index, it.ExpectedValue(realisations=2, seed=study.seed))
+        assert (one.method, one.status, one.message) == ("expected-value", "ok", "")
+        assert one.improvement_percent == pytest.approx(-two.percent, abs=3.0 * two.percent_error)
+        assert one.improvement_error_percent is not None
 
 
 @pytest.mark.marathon

@@ -7,16 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite, isnan, nan
+from math import isfinite, nan
 
 from inerter.decision.of_study import nonlinear_elements
-from inerter.decision.results import Improvement, percent_below
+from inerter.decision.results import Improvement
 from inerter.errors import StatusKind
 from inerter.files.study.parts import FAILURES
-from inerter.files.study.speeds import BESIDE, is_at_one_speed, quick_method, value_at_speed
+from inerter.files.study.speeds import BESIDE, estimate_at_speed, is_at_one_speed, quick_method
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import capital, format_list, format_percent_size, format_quantity, format_share
 from inerter.indices.names import title_with_name
+from inerter.methods.compare import compare_estimates
 from inerter.methods.method import evaluate
 from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps, simulating_method
 from inerter.network_search.real_inerters import RealInerter
@@ -82,6 +83,7 @@ class SpeedMargin:
     speed: float
     method: str
     improvement_percent: float | None
+    improvement_error_percent: float | None  # its standard error, None if nothing is simulated
     status: str
     message: str
 
@@ -301,18 +303,25 @@ def _speeds(asked: MarginRequest) -> Iterator[SpeedMargin]:
         return
     method = _quick_method(asked, has_friction=any(part.acts for part in asked.design.mechanism().strut_elements()))
     for factor in BESIDE:
-        if factor == 1.0:
-            continue
-        ends = [
-            value_at_speed(study, vehicle, (layout, asked.index, method), factor)
-            for layout, vehicle in ((asked.layout, asked.design), (asked.baseline_layout, asked.baseline))
-        ]
-        (own, first), (base, second) = ends
-        below = percent_below(own, base)
-        percent = None if isnan(below) else below
-        message = "; ".join(dict.fromkeys(filter(None, (first, second))))
-        kind = StatusKind.FAILED if percent is None else StatusKind.INACCURATE if message else StatusKind.OK
-        yield SpeedMargin(factor, factor * study.road.speed, method, percent, kind.value, message)
+        if factor != 1.0:
+            yield _speed(asked, method, factor)
+
+
+def _speed(asked: MarginRequest, method: str, factor: float) -> SpeedMargin:
+    """Improvement at another speed, by the method of the decision where a quick one is not sure."""
+    ends = [
+        estimate_at_speed(asked.study, vehicle, (layout, asked.index, method), factor)
+        for layout, vehicle in ((asked.layout, asked.design), (asked.baseline_layout, asked.baseline))
+    ]
+    (own, first), (base, second) = ends
+    message = "; ".join(dict.fromkeys(filter(None, (first, second))))
+    if message and method != asked.method and not is_blind(asked.method):
+        return _speed(asked, asked.method, factor)
+    two = None if own is None or base is None else compare_estimates(own, base)
+    percent, error = (None, None) if two is None else (number_or_none(-two.percent), number_or_none(two.percent_error))
+    kind = StatusKind.FAILED if percent is None else StatusKind.INACCURATE if message else StatusKind.OK
+    assert asked.study.road is not None
+    return SpeedMargin(factor, factor * asked.study.road.speed, method, percent, error, kind.value, message)
 
 
 def _speed_caveats(asked: MarginRequest, speeds: Sequence[SpeedMargin]) -> Iterator[MarginCaveat]:

@@ -13,7 +13,7 @@ from inerter.formatting import format_quantity
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.equivalent import has_friction
 from inerter.methods.equivalent_linear import has_play
-from inerter.methods.method import MethodWithExactFallback, constituents_of, evaluate
+from inerter.methods.method import Estimate, MethodWithExactFallback, constituents_of, evaluate
 from inerter.methods.registry import averages, is_blind, without_roads
 from inerter.systems.piecewise import piecewise
 from inerter.vehicle.vehicle import Vehicle
@@ -52,6 +52,17 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
 
 def value_at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float) -> tuple[float, str]:
     """Value at `factor` times the speed of the study (nan if none), and a message if it is doubtful or missing."""
+    found, message = estimate_at_speed(study, vehicle, asked, factor)
+    return (np.nan if found is None else found.value), message
+
+
+def estimate_at_speed(
+    study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float
+) -> tuple[Estimate | None, str]:
+    """Estimate at `factor` times the speed of the study, None if it is not finite; a message if it is doubtful or none.
+
+    `asked` are the layout, the index and the method.
+    """
     layout, index, method = asked
     assert study.road is not None
     speed = factor * study.road.speed
@@ -61,14 +72,14 @@ def value_at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], 
         if isinstance(by, MethodWithExactFallback) and any(
             by.share_unsure(*one, {}) for one in constituents_of(vehicle, asked_index)
         ):
-            return np.nan, "it takes more digits than double precision has"
+            return None, "it takes more digits than double precision has"
         found = evaluate(vehicle, asked_index, by)
     except (InerterError, np.linalg.LinAlgError, ArithmeticError) as error:
-        return np.nan, f"at {format_quantity(3.6 * speed, 'km/h')} there is no value ({str(error).rstrip('.')})"
+        return None, f"at {format_quantity(3.6 * speed, 'km/h')} there is no value ({str(error).rstrip('.')})"
     if not np.isfinite(found.value):
         reason = str(found.status) if not found.status.ok else "it is without bounds"
-        return np.nan, f"at {format_quantity(3.6 * speed, 'km/h')} there is no finite value ({reason.rstrip('.')})"
-    return found.value, found.status.doubt
+        return None, f"at {format_quantity(3.6 * speed, 'km/h')} there is no finite value ({reason.rstrip('.')})"
+    return found, found.status.doubt
 
 
 def quick_method(study: Study, vehicle: Vehicle) -> str:

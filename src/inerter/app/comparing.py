@@ -13,7 +13,7 @@ from inerter.app.designs import Design, baseline_of, designs_of, given_design
 from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell
-from inerter.decision.results import Improvement
+from inerter.decision.results import Improvement, is_doubtful, possibly_least
 from inerter.errors import DesignError
 from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.parts import FAILURES
@@ -40,12 +40,6 @@ class DesignEstimate:
     index: str
     method: str
     estimate: Estimate
-
-    @property
-    def is_doubtful(self) -> bool:
-        """Whether the value is nan, or finite with a status that is not ok."""
-        value, status = self.estimate.value, self.estimate.status
-        return bool(np.isnan(value)) or (bool(np.isfinite(value)) and not status.ok)
 
     def beside(self, other: DesignEstimate) -> Comparison | None:
         """Comparison with another design on the same roads.
@@ -177,14 +171,9 @@ def _best(found: Sequence[DesignEstimate]) -> list[int]:
 
     None of them, where a value is doubtful or nobody has chosen a design: then the best is not known.
     """
-    if any(one.design.unchosen or one.is_doubtful for one in found):
+    if any(one.design.unchosen or is_doubtful(one.estimate.value, one.estimate.status) for one in found):
         return []
-    finite = [i for i, one in enumerate(found) if np.isfinite(one.estimate.value)]
-    if not finite:
-        return []
-    least = min(finite, key=lambda i: found[i].estimate.value)
-    beside = {i: improvement_of(found[i].beside(found[least])) for i in finite if i != least}
-    return [i for i in finite if i == least or ((two := beside[i]) is not None and two.is_equal)]
+    return possibly_least([one.estimate.value for one in found], lambda i, j: improvement_of(found[i].beside(found[j])))
 
 
 def describe_result(one: DesignEstimate, baseline: DesignEstimate | None) -> Answer:

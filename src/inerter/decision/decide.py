@@ -8,9 +8,8 @@ from enum import StrEnum
 from math import isfinite
 
 from inerter.decision.caveats import Caveat, Contest, Over, caveats_of, unchosen_clause, unknown_limits
-from inerter.decision.results import DesignResult, Improvement
+from inerter.decision.results import DesignResult, Improvement, possibly_least
 from inerter.formatting import capital, format_list
-from inerter.methods.ties import equally_least
 from inerter.statements import Severity, Statement
 
 
@@ -82,11 +81,8 @@ def decide(
 def _winners(designs: Sequence[DesignResult], ranked: Sequence[DesignResult], over: Over) -> list[DesignResult]:
     """Ranked designs that may have the lowest value: the simplest first, else in the given order."""
     order = {id(one): place for place, one in enumerate(designs)}
-    if not ranked:
-        return []
-    best, least = ranked[0], equally_least([one.goal.value for one in ranked])
-    found = [one for i, one in enumerate(ranked) if i in least or ((by := over(best, one)) is not None and by.is_equal)]
-    return sorted(found, key=lambda one: (one.n_elements, order[id(one)]))
+    found = possibly_least([one.goal.value for one in ranked], lambda i, j: over(ranked[i], ranked[j]))
+    return sorted((ranked[i] for i in found), key=lambda one: (one.n_elements, order[id(one)]))
 
 
 def _order(design: DesignResult) -> tuple[bool, bool, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import inf, isfinite, isnan, nan
 
@@ -9,6 +10,7 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.figures.labels import NOTICEABLE
 from inerter.formatting import capital, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
+from inerter.methods.ties import equally_least
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,25 @@ def percent_below(value: float, base: float) -> float:
     return 100.0 * (1.0 - value / base) if isfinite(value) and isfinite(base) and base else nan
 
 
+def possibly_least(values: Sequence[float], over: Callable[[int, int], Improvement | None]) -> list[int]:
+    """Numbers of the values that cannot be told from the lowest one, in their order; none that is not finite.
+
+    `over` gives the improvement of the design of one number over that of another, or None.
+    """
+    equal = equally_least(values)
+    best = min(equal, key=lambda i: values[i], default=None)
+
+    def is_equal(i: int) -> bool:
+        return best is not None and isfinite(values[i]) and (by := over(best, i)) is not None and by.is_equal
+
+    return [i for i in range(len(values)) if i in equal or is_equal(i)]
+
+
+def is_doubtful(value: float, status: Status) -> bool:
+    """Whether a value is nan, or finite with a status that is not ok."""
+    return isnan(value) or (isfinite(value) and not status.ok)
+
+
 @dataclass(frozen=True)
 class IndexResult:
     """Value of an index of one design, and its improvement over the baseline; None if they cannot be compared."""
@@ -76,7 +97,7 @@ class IndexResult:
     @property
     def is_doubtful(self) -> bool:
         """Whether the value is nan, or finite with a status that is not ok."""
-        return isnan(self.value) or (isfinite(self.value) and not self.status.ok)
+        return is_doubtful(self.value, self.status)
 
     def doubt(self, of: str) -> str:
         """Sentence on a value of the design `of` that is unreliable, infinite or missing; empty for a reliable one."""

@@ -11,6 +11,7 @@ from typing import Any
 from inerter.app.comparing import DesignEstimate, describe_estimate, describe_result, evaluate_design, improvement_of
 from inerter.app.designs import Design, baseline_of, designs_of, one_design, problem_digest
 from inerter.app.index_values import DesignLimit, limits_at
+from inerter.app.wire import typeset_sentences
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult
@@ -94,17 +95,8 @@ def margins_of(study: Study, body: Body, tell: Progress) -> Answer:
         method=decisive_method(body.get("methods") or study.evaluate),
         threads=os.cpu_count() or 1,
     )
-    told: Answer = _typeset_sentences(asdict(find_margins(asked, tell)))
+    told: Answer = typeset_sentences(asdict(find_margins(asked, tell)))
     return told
-
-
-def _typeset_sentences(told: Any, key: str = "") -> Any:
-    """Answer with its sentences in printed form."""
-    if isinstance(told, dict):
-        return {name: _typeset_sentences(one, name) for name, one in told.items()}
-    if isinstance(told, list):
-        return [_typeset_sentences(one, key) for one in told]
-    return typeset(told) if key in ("sentence", "short") else told
 
 
 def verdict_of(told: Decision) -> Answer:

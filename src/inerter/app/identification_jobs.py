@@ -10,11 +10,13 @@ from typing import Any
 from inerter.app.documents import PATH
 from inerter.app.fit_advice import causes, findings, further_offers
 from inerter.app.kinds import RESULTS, Tell
+from inerter.app.wire import typeset_sentences
 from inerter.errors import RecordError
 from inerter.files.common.folder import WriteMode, open_results
 from inerter.files.common.toml import tables_of
 from inerter.files.identification.loading import identification_of
 from inerter.files.identification.running import IdentificationResult, read, run_identification
+from inerter.formatting import typeset
 from inerter.report.identification import RESULT_NAMES, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import unreliability_reason
@@ -39,14 +41,18 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
         write_fit(found, results.draft)
         results.publish()
         write_identification(found, results.draft, lambda part: tell(round(1000.0 * part), 1000, "drawing"))
-    shown = {name: value_and_interval(found, name) for name in found.fit.parameters}
+    answer: dict[str, Any] = typeset_sentences(
+        {
+            **identification_data(found),
+            "reason": unreliability_reason(found),
+            "causes": causes(found),
+            "findings": findings(found),
+        }
+    )
     return {
-        **identification_data(found),
-        "shown": shown,
-        "reason": unreliability_reason(found),
-        "causes": causes(found),
+        **answer,
+        "shown": {name: [*map(typeset, value_and_interval(found, name))] for name in found.fit.parameters},
         "offers": further_offers(found),
-        "findings": findings(found),
         "asked": {"model": body.get("model"), "config": body.get("config") or {}},
         "device": _device(found),
     }

@@ -11,6 +11,9 @@ import numpy as np
 
 from inerter.app.documents import problems_of
 from inerter.errors import InerterError, WorkError
+from inerter.formatting import typeset
+
+_SENTENCES = ("sentence", "short", "status", "reason", "remedy", "findings")  # keys of sentences and lists of them
 
 
 class Refusal(Exception):  # noqa: N818 -- an answer, not a fault
@@ -24,6 +27,19 @@ class Refusal(Exception):  # noqa: N818 -- an answer, not a fault
 def encode_json(data: Any) -> bytes:
     """Data as JSON: nan is null, infinity is text, arrays are lists."""
     return json.dumps(_plain(data), ensure_ascii=False, allow_nan=False).encode("utf-8", "backslashreplace")
+
+
+def typeset_sentences(answer: Any, key: str = "") -> Any:
+    """Answer with its sentences in printed form.
+
+    >>> typeset_sentences({"sentence": "below 3 um", "unit": "um"})
+    {'sentence': 'below 3 µm', 'unit': 'um'}
+    """
+    if isinstance(answer, dict):
+        return {name: typeset_sentences(one, name) for name, one in answer.items()}
+    if isinstance(answer, list | tuple):
+        return [typeset_sentences(one, key) for one in answer]
+    return typeset(answer) if key in _SENTENCES and isinstance(answer, str) else answer
 
 
 def decode_json(text: bytes) -> Any:

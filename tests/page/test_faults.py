@@ -425,7 +425,7 @@ def test_reasons_and_values_in_conditions_are_read_without_a_pointer(visitor: Vi
     _open(visitor, tmp_path, "conditions", CONDITIONS)
     page, rows = visitor.page, visitor.page.locator("[aria-label=Conditions] tbody tr")
     _layout(visitor, "S3")
-    page.locator("[aria-label=Conditions] th:has-text('S1 [m/s²]')").wait_for()
+    page.locator("[aria-label=Conditions] th:has-text('J1 [m/s²] in condition')").wait_for()
     assert rows.locator("th").all_inner_texts() == ["empty (25 %)", "loaded (75 %)"]
     k, b = it.Spring(120e3), it.Inerter(300.0)
     cars = (it.QuarterCar(181.75, 25.0, 120e3, strut=strut) for strut in (k | it.Damper(7e3) - b, k | it.Damper(5e3)))

@@ -408,3 +408,29 @@ def test_a_fit_is_in_sight_below_its_button(visitor: Visitor, tmp_path: Path) ->
     assert panel is not None
     assert fit is not None
     assert fit["y"] < panel["y"] + panel["height"] - 60.0
+
+
+def test_a_long_name_of_the_baseline_leaves_every_column_of_the_ranking_in_sight(
+    visitor: Visitor, tmp_path: Path
+) -> None:
+    page = visitor.page
+    path = tmp_path / "long.toml"
+    name = "strut_of_the_vehicle_in_series_production"[:40]
+    path.write_text((EXAMPLES / "conditions.toml").read_text().replace("S1", name), encoding="utf-8")
+    visitor.open(path)
+    page.wait_for_selector("text=long.toml is open")
+    visitor.settled()
+    widths = page.eval_on_selector_all(".answers .scroll", "all => all.map(one => [one.scrollWidth, one.clientWidth])")
+    assert len(widths) == 2
+    assert all(inside <= width for inside, width in widths)
+
+
+def test_nothing_is_optimised_where_there_is_no_layout(visitor: Visitor, tmp_path: Path) -> None:
+    page = visitor.page
+    path = tmp_path / "bare.toml"
+    text = (EXAMPLES / "conditions.toml").read_text()
+    path.write_text(text.replace('S1 = "k | c"\nS3 = "k | c - b"\n', ""), encoding="utf-8")
+    visitor.open(path)
+    page.wait_for_selector("text=bare.toml is open")
+    for name in ("Find best O", "All layouts"):
+        assert page.get_by_role("button", name=name).is_disabled()

@@ -194,7 +194,7 @@ def test_other_designs_are_drawn_too(visitor: Visitor) -> None:
     page = visitor.page
     visitor.drawn()
     assert page.locator("path.curve").count() == 2
-    page.locator(".plot-tools summary", has_text="Also").click()
+    page.locator(".plot-tools summary", has_text="More curves").click()
     page.locator(".plot-tools").get_by_label("S2", exact=True).check()
     page.wait_for_selector("path.curve[data-curve=S2]")
     assert page.locator(".drawn .name").all_text_contents().count("S2") == 1

@@ -343,13 +343,14 @@ test("a value has no more places than its error bound leaves", () => {
     [503.88, -1],
     [6.6506e-5, 7],
     [-0.29, 6],
+    [1.068, 4],
     [0, 2],
     [4.5, null],
     [null, 2],
   ];
   assert.deepEqual(
     written.map(([value, places]) => placed(value, places)),
-    ["2.51", "500", "6.65·10⁻⁵", "−0.29", "0", "4.5", "–"],
+    ["2.51", "500", "6.65·10⁻⁵", "−0.29000", "1.0680", "0", "4.5", "–"],
   );
 });
 

@@ -88,7 +88,7 @@ function Ranking({ store, answer: { is, value, before } }) {
     <table><thead><tr><th scope="col">layout</th>
       <th scope="col" title=${goal && withUnit(goal.title, units.goal.unit)}>${
         goal ? withUnit(goal.index, units.goal.unit) : goalOf(state)}</th>
-      <th scope="col">against ${baseline}</th>
+      <th scope="col" title=${`against ${baseline}`}>against ${baseline}</th>
       ${others.map((/** @type {any} */ { index, title }, /** @type {number} */ i) => html`<th scope="col" key=${index}
         title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
     <tbody key=${order}>${rows.map((row) => html`<${Row} key=${row.layout}
@@ -123,7 +123,7 @@ function Row({ store, row, units, sketched, stale, compared, missing }) {
     ${others.map((/** @type {any} */ other, /** @type {number} */ i) => html`<td
       class=${`number other ${unchosen.length ? "" : better(other)}`} key=${other.index} title=${other.message}
       data-index=${on ? other.index : undefined} data-value=${other.value}>
-      <${Against} row=${{ ...other, is_baseline: isBaseline || unchosen.length > 0 }} unchosen=${false} />
+      <${Against} row=${{ ...other, is_baseline: isBaseline || unchosen.length > 0 }} />
       <div class="scatter">${amountText(units ? scaled(other, units.others[i].factor) : other)}</div></td>`)}
   </tr>`;
 }
@@ -131,9 +131,9 @@ function Row({ store, row, units, sketched, stale, compared, missing }) {
 const LEAST = 0.05; // [%] a standard error that changes what is written
 
 /** By how much the goal is better than of the baseline; first what makes that doubtful.
- * @param {{row: any, unchosen: boolean}} props */
-function Against({ row: { is_baseline: isBaseline, improvement_percent: value, improvement_error_percent: error,
-  improvement_status: difference, status: own, tie }, unchosen }) {
+ * @param {{row: any, unchosen?: boolean}} props */
+export function Against({ row: { is_baseline: isBaseline, improvement_percent: value, improvement_error_percent: error,
+  improvement_status: difference, status: own, tie }, unchosen = false }) {
   if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
   const none = isBaseline || typeof value !== "number";
   const status = none ? own : difference;
@@ -220,8 +220,8 @@ function Conditions({ state, goal, row, baseline }) {
   const both = [row, ...(baseline && baseline !== row ? [baseline] : [])];
   const values = both.flatMap(({ in_conditions: each }) => each.map((/** @type {any} */ { value }) => value));
   const { unit, factor } = unitFor(state.about, values, goal.unit);
-  const heads = [`${goal.index} in condition`, ...both.map(({ name }) => withUnit(name, unit)),
-    ...(both.length > 1 ? [`against ${baseline.name}`] : [])];
+  const heads = [`${withUnit(goal.index, unit)} in condition`, ...both.map(({ name }) => name),
+    ...(both.length > 1 ? [`against ${baseline.name}`] : [])].map((head) => [head, head]);
   return html`<${Table} label="Conditions" class="conditions" heads=${heads}>
     ${row.in_conditions.map((/** @type {any} */ own, /** @type {number} */ i) => html`<tr key=${own.name}>
       <th scope="row">${own.name}${own.share !== null && html` <small>(${shown(100 * own.share, 3)} %)</small>`}</th>

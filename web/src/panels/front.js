@@ -7,7 +7,7 @@ import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
-import { placed, printed, scaled, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
+import { aligned, placed, printed, scaled, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
 import { takeOptima } from "../working.js";
 import { indexAxis, indexChoices, indicesOf, signed } from "./answers.js";
 import { Files } from "./files.js";
@@ -167,7 +167,7 @@ function lineThrough(entries, first, second) {
 /** The value of an index at a point, in the digits that its error allows. @param {Point} point @param {Index} index */
 function told({ values, decimals }, { index, factor }) {
   const { value, decimals: places } = scaled({ value: values[index], decimals: decimals?.[index] }, factor);
-  return typeof places === "number" ? placed(value, places) : shown(value, 4);
+  return typeof places === "number" ? placed(value, places) : aligned(value, 4);
 }
 
 /** @param {Front} front @returns {Entry[]} */
@@ -199,7 +199,7 @@ function Card({ about, entry, fronts, indices, baseline, take }) {
     ${point.network && html`<p><code>${point.network}</code></p>`}
     ${!isOk(point.status) && html`<p class="problem"><b>Unreliable.</b> ${point.status}</p>`}
     <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [other.name] : []),
-        ...(improvements ? [[`below ${baseline}`, `relative to the lowest value of ${baseline}`]] : [])]}>
+        ...(improvements ? [[`against ${baseline}`, `the lowest value of ${baseline}`]] : [])]}>
       ${indices.map((each) => html`<tr key=${each.index}>
         <th scope="row" title=${each.title}>${each.index}</th>
         <td class="number" data-value=${point.values[each.index]}>${told(point, each)}

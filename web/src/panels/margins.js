@@ -10,7 +10,7 @@ import { doubted, isOk } from "../parts/doubts.js";
 import { html } from "../parts/html.js";
 import { printed, shown, unitFor } from "../state/scale.js";
 import { begin, ended } from "../working.js";
-import { indicesOf, signed } from "./answers.js";
+import { Against, indicesOf, signed } from "./answers.js";
 import { JobHead, RUNNING } from "./work.js";
 
 /** @import { Store, Job } from "../state/store.js" */
@@ -66,10 +66,9 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
     ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["Speed [km/h]", "against the baseline"]}>
-      ${speeds.map((/** @type {any} */ { factor, speed, improvement_percent: better, status }) => html`<tr
-        key=${factor}>
+      ${speeds.map((/** @type {any} */ { factor, speed, status, ...one }) => html`<tr key=${factor}>
         <th scope="row">${shown(3.6 * speed, 4)} (${signed(100 * (factor - 1), 0)})</th>
-        <td class="number">${isOk(status) ? "" : `${status}: `}${signed(better)}</td></tr>`)}<//>`}
+        <td class="number"><${Against} row=${{ ...one, status, improvement_status: status }} /></td></tr>`)}<//>`}
     ${scatter?.sentence && html`<p>${scatter.sentence}</p>`}</div>`;
 }
 

@@ -77,7 +77,7 @@ function Others({ store }) {
   const drawn = shownDesigns(document).map(({ layout }) => `layout ${layout}`);
   const choices = choicesOf(document).filter(({ key }) => !drawn.includes(key));
   if (choices.length === 0) return null;
-  return html`<${DropDown} title="Also">${choices.map(({ key, name, kept }) => html`<label key=${key}>
+  return html`<${DropDown} title="More curves">${choices.map(({ key, name, kept }) => html`<label key=${key}>
     <input type="checkbox" checked=${ghosts.includes(key)} onChange=${() => store.look({ ghosts: ghosts.includes(key)
       ? ghosts.filter((each) => each !== key) : [...ghosts, key] })} /> ${name}${kept ? ", kept" : ""}</label>`)}<//>`;
 }

@@ -9,7 +9,8 @@ import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf, strutTexts } from "../questions.js";
 import { entryAt, own, strutsOf, textOf } from "../state/document.js";
-import { estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn } from "../state/scale.js";
+import { estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
+  from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indexAxis, indicesOf, percent } from "./answers.js";
 import { Constraints } from "./asked.js";
@@ -192,9 +193,9 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   const methods = [...new Set(real.map((/** @type {Row} */ { method }) => method))];
   /** @param {string} label @param {string} words @param {Row[]} rows @param {boolean} [ranked] */
   const table = (label, words, rows, ranked = false) => html`<p class="quiet">${words}</p>
-    <${Table} key=${label} label=${label} heads=${["network", index, ...better, ""]}>
+    <${Table} key=${label} label=${label} heads=${["network", withUnit(index, written.unit), ...better, ""]}>
       ${rows.map((row, i) => html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take}
-        rank=${ranked ? i + 1 : undefined} written=${written} compared=${compared} />`)}
+        rank=${ranked ? i + 1 : undefined} factor=${written.factor} compared=${compared} />`)}
     <//>`;
   return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
       ({ of: network, status, message }))} />
@@ -212,16 +213,16 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
 const optimised = ({ value, standard_error: error }) =>
   (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
 
-/** @param {{state: State, row: Row, rank?: number, written: WrittenUnit, compared: boolean,
+/** @param {{state: State, row: Row, rank?: number, factor: number, compared: boolean,
  * take: (row: Row) => void}} props */
-function NetworkRow({ state, row, rank, written: { unit, factor }, compared, take }) {
+function NetworkRow({ state, row, rank, factor, compared, take }) {
   const { network, status, improvement_percent: part, ideal, same_values: same } = row;
   return html`<tr data-network=${network}>
     <th scope="row"><div class="found"><span>${rank}</span><${Sketch} state=${state} tree=${row.tree} />
       <div><code>${network}</code><div class="scatter">${valuesIn(state.about, { ...row.elements, ...row.values },
         row.active_bounds)}</div></div></div></th>
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
-      ${optimised(scaled(row, factor))} <span class="unit">${printed(unit)}</span>
+      ${optimised(scaled(row, factor))}
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
     ${compared && html`<td class="number">${percent(part)}</td>`}

@@ -76,8 +76,9 @@ function FindBest({ store, api }) {
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
   const isMain = !isSearched(state, layout) && !isFitting(state);
+  const ready = goal && method && layout !== "";
   return html`<form class="optimise" onSubmit=${formHandler(async (_, { submitter }) => {
-    if (!goal || !method) return;
+    if (!ready) return;
     const all = submitter?.getAttribute("value") === "all";
     setTold({ text: html`<${Moving} what="Searching" />`, of: state.history.present });
     const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout],
@@ -86,8 +87,8 @@ function FindBest({ store, api }) {
     setTold(present.study === study ? { text, of: present } : nothing);
   })}>
     <div class="head"><h2 id="values-title">Values</h2>
-      <button value="all" disabled=${!goal || !method}>All layouts</button>
-      <button class=${isMain ? "main" : ""} id="find-best" disabled=${!goal || !method}>
+      <button value="all" disabled=${!ready}>All layouts</button>
+      <button class=${isMain ? "main" : ""} id="find-best" disabled=${!ready}>
         Find best <kbd>O</kbd></button></div>
     <p role="status">${told.of === state.history.present && told.text}</p>
   </form>`;

@@ -87,12 +87,12 @@ export const valuesIn = (about, texts, at = {}) => Object.entries(texts).map(([n
   `${name} = ${briefIn(about, String(text), takenApart(text)?.unit ?? "")}${name in at ? "*" : ""}`
     .replaceAll(" ", "\u00a0")).join(", ");
 
-/** A number with so many places after the point, or before it where these are negative, as answers show it; five digits
- * where there is no number of places. @param {number | null | undefined} number
+/** A number with so many places after the point, or before it where these are negative, as in the columns of a table;
+ * with five digits at most, also where there is no number of places. @param {number | null | undefined} number
  * @param {number | null | undefined} places */
 export function placed(number, places) {
   if (typeof number !== "number" || typeof places !== "number" || number === 0) return shown(number);
-  return shown(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
+  return aligned(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
 }
 
 /** A value and its error with as many places as the error tells, and no more than `most`: one digit of it, or two if

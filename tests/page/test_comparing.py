@@ -167,8 +167,8 @@ def test_kept_designs_of_other_studies_are_compared_with_what_tells_them_apart(
     rows = _compared(visitor, ["S5", "S1", "heavy"])
     page.wait_for_function(  # it is kept a moment after the last change
         """() => {
-          const { elements, road } = JSON.parse(sessionStorage.getItem('inerter.document')).study;
-          return elements.b === '150 kg' && road.speed === '25 m/s';
+          const { elements, road, vehicle } = JSON.parse(sessionStorage.getItem('inerter.document')).study;
+          return elements.b === '150 kg' && vehicle.unsprung_mass === '40 kg' && road.speed === '25 m/s';
         }"""
     )
     study = study_from(page.evaluate("() => JSON.parse(sessionStorage.getItem('inerter.document'))")["study"])

@@ -18,7 +18,6 @@ from inerter.files.common.codec import (
 from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import (
     EXPRESSION,
-    TEXT,
     TEXT_SCHEMA,
     YES_OR_NO,
     any_quantity,
@@ -30,6 +29,7 @@ from inerter.files.common.entries import (
 from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
+from inerter.files.common.titles import title_section
 from inerter.identification.models import MODELS
 from inerter.records.record import CHANNELS
 from inerter.records.uncertain import Uncertain, parse_uncertain
@@ -172,7 +172,7 @@ def identification_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections."""
     return TableCodec(
         (
-            section("title", TEXT, "Title of the report; the name of the record if left out.", default=None),
+            title_section("the report", "record"),
             section(
                 "record",
                 TableCodec((*_CHANNELS, *keys_in(RecordRequest)), _record),

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError
 from inerter.files.common.layouts import layout_choice_problems, layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import SignalRequest, signal_of
+from inerter.files.common.titles import title_of
 from inerter.files.common.toml import read_tables, value_of
 from inerter.files.rig.running import RigRequest
 from inerter.files.rig.sections import rig_codec
@@ -49,7 +49,7 @@ def rig_of(tables: Mapping[str, Any], path: Path) -> RigRequest:
     if problems:
         raise refusal(path, problems)
     rig = _rig(path, settings, next(iter(layouts[chosen].struts.values())), elements)
-    title = escape_surrogates(path.stem) if found["title"] is None else found["title"]
+    title = title_of(found, path)
     return RigRequest(title, rig, signal, settings["duration"], settings["start"])
 
 

@@ -7,6 +7,7 @@ from inerter.files.common.elements import elements_codec
 from inerter.files.common.entries import POSITIVE, TEXT, YES_OR_NO, any_quantity, not_negative, positive, whole
 from inerter.files.common.layouts import layouts_section
 from inerter.files.common.signals import signal_section
+from inerter.files.common.titles import title_section
 from inerter.registry import cache_until_registration
 from inerter.vehicle.rig import Rig
 
@@ -38,7 +39,7 @@ def rig_codec() -> TableCodec:
     """The whole file, as a dictionary by its sections."""
     return TableCodec(
         (
-            section("title", TEXT, "Title of the record; the name of the file if left out.", default=None),
+            title_section("the record"),
             section(
                 "elements",
                 elements_codec(free=False),

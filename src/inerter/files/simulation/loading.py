@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from inerter.atomic_io import escape_surrogates
 from inerter.errors import InerterError, SimulationError
 from inerter.files.common.layouts import layout_choice_problems, layout_problems
 from inerter.files.common.problem import Problem, at
@@ -15,6 +14,7 @@ from inerter.files.common.roads import ROAD_QUANTITIES, MeasuredLine, line_throu
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.common.signals import signal_of
 from inerter.files.common.suggest import nearest, some
+from inerter.files.common.titles import title_of
 from inerter.files.common.toml import read_tables, value_of
 from inerter.files.common.vehicles import inputs, tracks, vehicle_problems
 from inerter.files.simulation.request import SimulationRequest
@@ -50,7 +50,7 @@ def _resolve(path: Path, found: Mapping[str, Any], line: MeasuredLine | None) ->
     if settings["layout"] is None:
         settings["layout"] = next(iter(found["layouts"])) if len(found["layouts"]) == 1 else ""
     return SimulationRequest(
-        title=escape_surrogates(path.stem) if found["title"] is None else found["title"],
+        title=title_of(found, path),
         path=path,
         vehicle=found["vehicle"],
         road=without_source(road, line) if road else {},

@@ -8,6 +8,7 @@ from inerter.files.common.entries import TEXT, YES_OR_NO, one_of, positive, whol
 from inerter.files.common.layouts import layouts_section
 from inerter.files.common.roads import road_codec
 from inerter.files.common.signals import signal_section
+from inerter.files.common.titles import title_section
 from inerter.files.common.vehicle_tables import vehicle_codec
 from inerter.files.common.vehicles import models
 from inerter.registry import cache_until_registration
@@ -48,7 +49,7 @@ def simulation_codec() -> TableCodec:
     *others, last = map(quote_value, models())
     return TableCodec(
         (
-            section("title", TEXT, "Title of the summary; the name of the file if left out.", default=None),
+            title_section("the summary"),
             section(
                 "vehicle",
                 vehicle_codec(models(), one_of("a vehicle model", models()), free=False),

@@ -7,13 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from inerter.atomic_io import escape_surrogates
 from inerter.files.common.elements import free_networks_in, with_tied_values
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
 from inerter.files.common.roads import MeasuredLine, line_through, road_of, track_problems, without_source
 from inerter.files.common.suggest import nearest, some
+from inerter.files.common.titles import title_of
 from inerter.files.common.toml import read_tables, value_of
 from inerter.files.common.vehicles import tracks, vehicle_problems
 from inerter.files.study.limits import limits_of
@@ -113,7 +113,7 @@ def _resolve(path: Path, found: Mapping[str, Any], elements: dict[str, Element],
         settings["baseline"] = next(iter(found["layouts"]))
     road = found["road"] and without_source(found["road"], line)
     return Study(
-        title=escape_surrogates(path.stem) if found["title"] is None else found["title"],
+        title=title_of(found, path),
         path=path,
         vehicle=found["vehicle"],
         road=None if road is None else road_of(road, None if line is None else line.shape),

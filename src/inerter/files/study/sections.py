@@ -45,6 +45,7 @@ from inerter.files.common.layouts import layouts_section
 from inerter.files.common.problem import invalid_entry
 from inerter.files.common.roads import road_codec
 from inerter.files.common.schema import words_schema
+from inerter.files.common.titles import title_section
 from inerter.files.common.vehicle_tables import vehicle_codec
 from inerter.files.common.vehicles import models
 from inerter.files.study.limits import LimitsCodec, StudyLimit
@@ -390,7 +391,7 @@ def study_codec() -> TableCodec:
     )
     *others, last = map(quote_value, study_models())
     keys = (
-        section("title", TEXT, "Title of reports; the name of the file if left out.", 'title = "My car"', None),
+        title_section("reports"),
         section(
             "vehicle",
             vehicle_codec(study_models(), _study_model, free=True),

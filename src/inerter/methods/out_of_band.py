@@ -277,6 +277,7 @@ class _Lines:
     some: Array  # lines whose images are computed [rad/s]
     images: Array  # (images, some): their angular frequencies [rad/s] ...
     gained: Array  # ... and amplitudes, of displacements, over omega^4
+    arriving: dict[tuple[str, str], NDArray[np.complex128]]  # what an input gets of a source on each line
 
 
 @lru_cache(maxsize=8)
@@ -287,6 +288,9 @@ def _lines_of(excitation: RandomExcitation) -> _Lines:
     some = omega[np.linspace(0, omega.size - 1, min(omega.size, _SMOOTH)).astype(int)]
     orders = np.array([*range(-_IMAGES, 0), *range(1, _IMAGES + 1)], dtype=float)
     images = some + 2.0 * np.pi / STEP * orders[:, None]
+    arriving: dict[tuple[str, str], NDArray[np.complex128]] = {}
+    for path in (path for one in excitation.reached for path in one):
+        arriving[path.input, path.source] = arriving.get((path.input, path.source), 0.0) + factor_of(path, omega)
     return _Lines(
         omega=omega,
         power=0.5 * (omega * signal.amplitudes) ** 2,
@@ -295,6 +299,7 @@ def _lines_of(excitation: RandomExcitation) -> _Lines:
         images=images,
         gained=_cubic(some * STEP, images * STEP)
         / some**4,  # with the cube of the angle they grow, or the fourth power
+        arriving=arriving,
     )
 
 
@@ -308,9 +313,9 @@ def _squared_gains(design: OnRoads, speeds: Array, system: LinearSystem) -> tupl
     for all inputs, so that each of the lines arrives with the phase of the first. What is cubic is the displacement of
     a road, whose velocity is the input of the linear system, or a force itself.
     """
-    linear, excitation = design.linear, design.excitation
+    linear = design.linear
     assert linear is not None
-    lines = _lines_of(excitation)
+    lines = _lines_of(design.excitation)
     omega, sources = lines.omega, list(dict.fromkeys(linear.problem.sources))
     here = modal_response(system, omega, linear.problem.pade_order)
     here = linear.problem.with_true_densities(here, omega)
@@ -325,9 +330,8 @@ def _squared_gains(design: OnRoads, speeds: Array, system: LinearSystem) -> tupl
         smooth = np.column_stack([np.interp(omega, lines.some, column) for column in images.T])
         smooth *= (omega ** (3 if is_road else 4))[:, None]
         for i, source in enumerate(sources):
-            there = [a for one in excitation.reached for a in one if (a.input, a.source) == (name, source)]
-            arriving = sum((factor_of(a, omega) for a in there), np.zeros(omega.size, dtype=complex))
-            sampled[:, :, i] += arriving[:, None] * smooth
+            if (name, source) in lines.arriving:
+                sampled[:, :, i] += lines.arriving[name, source][:, None] * smooth
     return np.sum(np.abs(here) ** 2, axis=2), np.sum(np.abs(sampled) ** 2, axis=2)
 
 

@@ -110,10 +110,18 @@ def _exponential(X: Matrix) -> tuple[Matrix, int]:
     return power, squarings
 
 
+def turned_back(angle: Matrix) -> NDArray[np.complex128]:
+    """exp(-j angle) of angles [rad], by cosine and sine: several times faster than the complex exponential."""
+    turned = np.empty(angle.shape, dtype=complex)
+    np.cos(angle, out=turned.real)
+    np.sin(-angle, out=turned.imag)
+    return turned
+
+
 def transfer(omega: Matrix, time: float, pade_order: int | None) -> NDArray[np.complex128]:
     """exp(-j omega time), or its Pade approximant."""
-    s = 1j * np.asarray(omega, dtype=float) * time
+    angle = np.asarray(omega, dtype=float) * time
     if pade_order is None or time == 0.0:
-        return np.asarray(np.exp(-s))
-    a = pade(pade_order)
+        return turned_back(angle)
+    a, s = pade(pade_order), 1j * angle
     return np.asarray(a.direct + np.sum(a.residues / (s[..., None] - a.poles), axis=-1))

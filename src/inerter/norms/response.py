@@ -54,8 +54,11 @@ def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, re
         raise LinearSystemError(f"A frequency response needs a list of frequencies [rad/s], got {omega!r}.") from None
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)):
         raise LinearSystemError("A frequency response needs a list of finite frequencies [rad/s].")
-    response = resolved(system)(frequencies) + system.D
+    response = resolved(system)(frequencies)
+    response += system.D
     sources = list(dict.fromkeys(system.sources))
+    if sources == list(system.sources) and not np.any(system.delays):
+        return np.asarray(response)
     result = np.zeros((frequencies.size, len(system.outputs), len(sources)), dtype=complex)
     for column, source in enumerate(sources):
         factor, before = np.ones(frequencies.size, dtype=complex), 0.0
@@ -63,7 +66,8 @@ def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, re
             if system.sources[j] != source:
                 continue
             delay = float(system.delays[j])
-            factor, before = factor * transfer(frequencies, delay - before, pade_order), delay
+            if delay != before:
+                factor, before = factor * transfer(frequencies, delay - before, pade_order), delay
             with np.errstate(invalid="ignore"):  # at a pole
                 result[:, :, column] += response[:, :, j] * factor[:, None]
     return result

@@ -13,10 +13,11 @@ import numpy as np
 
 from inerter.kernels.arrays import SHARP, Array, ConstantInts, History, Knots, March, MarchLines, MarchShape, Span
 from inerter.kernels.decorators import function_at, kernel, part
-from inerter.kernels.lanes import GROUP, as_numbers, in_groups, larger, multiply_add, smaller
+from inerter.kernels.lanes import GROUP, as_numbers, constant_at, in_groups, lane, larger, multiply_add, smaller
 
 BLOCK = 16  # steps that are judged together
 _FIRST = 4  # the same in the first block: where one alarm follows another, all steps made beyond it are in vain
+_REGISTERS = 28  # of the processor, without those for sums
 _EXTREMES = 7  # rows of `Path.extremes`, see there
 _STATES, _INPUTS, _BENDS, _LEAST, _MOST, _OF_BLOCK, _OF_STEP = range(_EXTREMES)
 
@@ -114,29 +115,53 @@ def apply_jumps(jumps: Array, knots: Knots, k: int, path: Path, b: int, shape: M
     path.before[b, n] = 1.0 if leaps else 0.0
 
 
+@part(inside=True, borrowing=True)
+def groups_of(path: Path, shape: MarchShape, first: int, stop: int) -> tuple[int, int]:
+    """The groups that hold these columns of a row: the first, and the one after the last."""
+    width = max(shape.rows, 1) // max(path.row_groups.shape[1], 1)
+    return first // width, (stop + width - 1) // width
+
+
+@part(inside=True, borrowing=True)
+def groups_with_states(path: Path, shape: MarchShape) -> int:
+    """Number of groups of a row that hold the state."""
+    return groups_of(path, shape, 0, shape.states)[1]
+
+
+@part(inside=True, borrowing=True)
+def is_state_held(path: Path, shape: MarchShape) -> bool:
+    """Whether one group holds the state, and registers that group, its numbers and the lines of both steps."""
+    return groups_with_states(path, shape) == 1 and 3 * (shape.states + shape.inputs) < _REGISTERS
+
+
 @part(inside=True, borrowing=True, fused=True)
-def follow(lines: Array, path: Path, b: int, steps: int, g: int, shape: MarchShape) -> Any:
+def follow(lines: Array, path: Path, state: Any, b: int, steps: int, g: int, shape: MarchShape) -> Any:
     """Group g of what follows from the state before step b and the inputs of so many `steps`.
 
-    Nothing is stored here, so that two of these take a state, or a line, from memory once.
+    `state` is that state if it `is_state_held`: it need not go through memory. Nothing is stored here, so that two of
+    these take a number once.
     """
-    n, m = shape.states, shape.inputs
-    total, other = lines[n + steps * m, g], 0.0
+    n, m, is_held = shape.states, shape.inputs, g == 0 and is_state_held(path, shape)
+    total, other = constant_at(lines, n + steps * m, g), 0.0
     for s in range(steps):  # the inputs first, which need not wait for the state
         for j in range(m):
-            total = multiply_add(lines[n + s * m + j, g], path.inputs[b + s, j], total)
+            total = multiply_add(constant_at(lines, n + s * m + j, g), path.inputs[b + s, j], total)
     for j in range(0, n - 1, 2):  # two sums, which need not wait for each other
-        total = multiply_add(lines[j, g], path.rows[b, j], total)
-        other = multiply_add(lines[j + 1, g], path.rows[b, j + 1], other)
+        even, odd = path.rows[b, j], path.rows[b, j + 1]
+        if is_held:
+            even, odd = lane(state, j), lane(state, j + 1)
+        total = multiply_add(constant_at(lines, j, g), even, total)
+        other = multiply_add(constant_at(lines, j + 1, g), odd, other)
     if n % 2:
-        other = multiply_add(lines[n - 1, g], path.rows[b, n - 1], other)
+        last = lane(state, n - 1) if is_held else path.rows[b, n - 1]
+        other = multiply_add(constant_at(lines, n - 1, g), last, other)
     return total + other
 
 
 @part(inside=True, borrowing=True)
-def find_largest(groups: Array, first: int, stop: int, out: Array) -> None:
-    """Fill `out` with the largest absolute value of each column in some rows; nan if the last one is."""
-    for g in range(groups.shape[1]):
+def find_largest(groups: Array, first: int, stop: int, columns: tuple[int, int], out: Array) -> None:
+    """Fill `out` with the largest absolute value of each of some columns in some rows; nan if the last one is."""
+    for g in range(*columns):
         most = abs(groups[first, g])
         for b in range(first + 1, stop):
             most = larger(most, abs(groups[b, g]))
@@ -144,9 +169,9 @@ def find_largest(groups: Array, first: int, stop: int, out: Array) -> None:
 
 
 @part(inside=True, borrowing=True)
-def find_extremes(groups: Array, first: int, stop: int, low: Array, high: Array) -> None:
-    """Fill `low` and `high` with the extremes of each column in some rows; nan if the last one is."""
-    for g in range(groups.shape[1]):
+def find_extremes(groups: Array, first: int, stop: int, columns: tuple[int, int], low: Array, high: Array) -> None:
+    """Fill `low` and `high` with the extremes of each of some columns in some rows; nan if the last one is."""
+    for g in range(*columns):
         least, most = groups[first, g], groups[first, g]
         for b in range(first + 1, stop):
             least, most = smaller(least, groups[b, g]), larger(most, groups[b, g])
@@ -158,10 +183,11 @@ def fill_sways(steps: Array, path: Path, first: int, stop: int, shape: MarchShap
     """Fill `out` with bounds of each guard's sway within any of some steps."""
     n, m, k, largest, groups = shape.states, shape.inputs, shape.elements, path.extremes, path.extreme_groups
     bends = n + 2 * k + shape.squares * (2 if shape.jumps else 1)  # rows of the sway's first terms
-    find_largest(path.row_groups, first, stop, groups[_STATES])
-    find_largest(path.input_groups, first, stop, groups[_INPUTS])
+    find_largest(path.row_groups, first, stop, groups_of(path, shape, 0, n), groups[_STATES])
+    find_largest(path.input_groups, first, stop, (0, path.input_groups.shape[1]), groups[_INPUTS])
     if shape.sharp:
-        find_largest(path.row_groups, first + 1, stop + 1, groups[_BENDS])
+        columns = groups_of(path, shape, bends, bends + SHARP * k)
+        find_largest(path.row_groups, first + 1, stop + 1, columns, groups[_BENDS])
     for e in range(k):
         sway = steps[n + m, shape.rows + e]
         for j in range(n):
@@ -210,7 +236,8 @@ def count_safe(limits: Array, steps: Array, path: Path, count: int, shape: March
         return count
     extremes, of_block, of_step = path.extremes, path.extremes[_OF_BLOCK], path.extremes[_OF_STEP]
     fill_sways(steps, path, 0, count, shape, of_block)
-    find_extremes(path.row_groups, 1, count + 1, path.extreme_groups[_LEAST], path.extreme_groups[_MOST])
+    guards = groups_of(path, shape, shape.states, shape.states + 2 * shape.elements)
+    find_extremes(path.row_groups, 1, count + 1, guards, path.extreme_groups[_LEAST], path.extreme_groups[_MOST])
     if not is_safe(limits, extremes[_LEAST], extremes[_MOST], of_block, shape):
         for b in range(count):
             row = path.rows[b + 1]
@@ -233,9 +260,11 @@ def add_squares(record: History, slots: Array, path: Path, k: int, count: int, s
         total, last = record.squares[o], record.last[o]
         for b in range(count):
             if shape.jumps and path.before[b, shape.states] != 0.0 and slots[b] >= 0 and k + b > span.settled:
-                total += path.rows[b + 1, at_start + o] ** 2 - last
+                value = path.rows[b + 1, at_start + o]
+                total += value * value - last
             if slots[b + 1] >= 0 and k + b >= span.settled:
-                last = path.rows[b + 1, at_end + o] ** 2
+                value = path.rows[b + 1, at_end + o]  # not ** 2: a call of a function where the compiler is cautious
+                last = value * value
                 total += last
         record.squares[o], record.last[o] = total, last
 
@@ -266,7 +295,7 @@ def march_steps(
     single = in_groups(lines.steps, 0, (one, columns))
     double = in_groups(lines.steps, (one + shape.jumps) * columns, (one + shape.inputs, columns))
     rows, groups = path.row_groups, path.row_groups.shape[1]
-    own = max((n * groups + shape.rows - 1) // max(shape.rows, 1), 0)  # groups with states
+    own = groups_with_states(path, shape)
     for i in range(n):
         path.rows[0, i] = lines.state[i]
     k, safe, count, most = span.first, 0, 0, BLOCK if shape.elements == 0 else _FIRST
@@ -279,18 +308,23 @@ def march_steps(
             for b in range(count):
                 apply_jumps(jumps, knots, k + b, path, b, shape)
                 for g in range(groups):
-                    rows[b + 1, g] = follow(single, path, b, 1, g, shape)
+                    rows[b + 1, g] = follow(single, path, rows[b, 0], b, 1, g, shape)
         else:
+            state: Any = 0.0
+            for g in range(min(own, 1)):
+                state = rows[0, g]
             for b in range(0, count - 1, 2):
+                one, two = state, state
                 for g in range(own):
-                    one, two = follow(single, path, b, 1, g, shape), follow(double, path, b, 2, g, shape)
+                    one, two = follow(single, path, state, b, 1, g, shape), follow(double, path, state, b, 2, g, shape)
                     rows[b + 1, g], rows[b + 2, g] = one, two
+                state = two
                 for g in range(own, groups):
-                    one, two = follow(single, path, b, 1, g, shape), follow(single, path, b + 1, 1, g, shape)
+                    one, two = follow(single, path, one, b, 1, g, shape), follow(single, path, two, b + 1, 1, g, shape)
                     rows[b + 1, g], rows[b + 2, g] = one, two
             if count % 2:
                 for g in range(groups):
-                    rows[count, g] = follow(single, path, count - 1, 1, g, shape)
+                    rows[count, g] = follow(single, path, state, count - 1, 1, g, shape)
         safe = count_safe(lines.limits, steps, path, count, shape)
         if shape.jumps and safe < count:
             for i in range(n):

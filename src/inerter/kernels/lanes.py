@@ -130,3 +130,24 @@ def as_numbers(typing: Any, array: Any, first: Any, shape: Any) -> Any:
 def in_groups(typing: Any, array: Any, first: Any, shape: Any) -> Any:
     """Compile `_as_numbers` with `GROUP` columns side by side, as one column."""
     return numba_lanes().over_numbers(array, first, shape, GROUP)
+
+
+def _constant_at(array: Array, i: int, j: int) -> Any:
+    return array[i, j]
+
+
+@instruction(_constant_at)
+def constant_at(typing: Any, array: Any, i: Any, j: Any) -> Any:
+    """Compile `array[i, j]` of what nothing changes meanwhile: the compiler may keep it in a register."""
+    return numba_lanes().constant_at(array, i, j)
+
+
+def _lane(x: float, j: int) -> float:
+    """Number j of those in all lanes; of a number alone it is that."""
+    return x
+
+
+@instruction(_lane)
+def lane(typing: Any, x: Any, j: Any) -> Any:
+    """Compile `_lane`."""
+    return numba_lanes().lane(x, j)

@@ -177,6 +177,15 @@ def largest_lane(x: Any) -> Definition:
     return types.float64(_common(x)), code
 
 
+def lane(x: Any, j: Any) -> Definition:
+    """Definition of `lanes.lane`."""
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.extract_element(*given) if isinstance(x, LanesType) else given[0]
+
+    return types.float64(x, types.int64), code
+
+
 def root(x: Any) -> Definition:
     """Definition of `lanes.root`."""
     return _definition_of("llvm.sqrt", x)
@@ -237,6 +246,21 @@ def over_numbers(array: Any, first: Any, shape: Any, width: int) -> Definition:
         return _view(context, builder, room, start, kind, sizes, 8 * width)
 
     return kind(array, types.int64, shape), code
+
+
+def constant_at(array: Any, i: Any, j: Any) -> Definition:
+    """Definition of `lanes.constant_at`: a load that no store can change."""
+
+    def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        room = arrays.make_array(array)(context, builder, given[0])
+        shape, strides = (cgutils.unpack_tuple(builder, packed) for packed in (room.shape, room.strides))
+        place = cgutils.get_item_pointer2(context, builder, room.data, shape, strides, "C", list(given[1:]))
+        value = builder.load(place)
+        value.align = 8
+        value.set_metadata("invariant.load", builder.module.add_metadata([]))
+        return value
+
+    return array.dtype(array, types.int64, types.int64), code
 
 
 def _view(context: Any, builder: Any, room: Any, start: Any, kind: Any, sizes: list[Any], item: int) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -13,6 +14,7 @@ from inerter.simulation.trajectory import FinalState, Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
 
 Matrix = NDArray[np.float64]
+_KEPT = 16  # systems
 Initial = Literal["rest", "preload", "periodic"] | Trajectory | Matrix
 
 
@@ -57,26 +59,34 @@ def _starting_velocities(system: PiecewiseSystem, rates: Matrix) -> Matrix:
 
     What inertia alone ties to a road goes with it at once: of all motions a blow leaves that of least kinetic energy.
     """
-    given = system.kinetic_road @ rates
-    if not np.any(given):
+    given = system.kinetic_road @ rates if rates.any() else rates
+    if not given.any():
         return np.zeros(system.kinetic.shape[1])
     momenta = system.kinetic.T * system.inertia
     return np.asarray(-np.linalg.solve(momenta @ system.kinetic, momenta @ given))
 
 
+@lru_cache(maxsize=_KEPT)
 def may_lie_unstrained(system: PiecewiseSystem) -> bool:
     """Whether nothing that switches has a force, or an elongation, at any rest."""
     limits = system.mechanics.limits
     return bool(np.all((limits[:, 0] <= 0.0) & (limits[:, 1] >= 0.0)))
 
 
+@lru_cache(maxsize=_KEPT)
+def _are_elongations(system: PiecewiseSystem) -> bool:
+    """Whether every position is the elongation of an element."""
+    own = np.array(system.kinematics.places.own)
+    return bool(np.count_nonzero(own >= 0) == system.positions.shape[0])
+
+
 def _positions(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
     """Positions at rest; those that are elongations have none of the rounding of heights."""
-    count, own = system.positions.shape[0], np.array(system.kinematics.places.own)
-    unstrained = np.count_nonzero(own >= 0) == count and not np.any(system.elongations[1] @ road)
-    if not np.any(force) and (unstrained or not np.any(road)) and may_lie_unstrained(system):
-        return np.zeros(count)
-    found = equilibrium(system, road, force)
+    if may_lie_unstrained(system) and not force.any():
+        is_flat = not road.any() or (_are_elongations(system) and not (system.elongations[1] @ road).any())
+        if is_flat:
+            return np.zeros(system.positions.shape[0])
+    own, found = np.array(system.kinematics.places.own), equilibrium(system, road, force)
     g = system.positions @ found.displacement + system.heights @ road
     g[own[own >= 0]] = found.elongation[own >= 0]
     return np.asarray(g)

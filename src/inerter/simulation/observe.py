@@ -155,7 +155,10 @@ def sampled_input(table: InputTable, derivative: int, channel: int) -> Matrix:
     at = np.flatnonzero(table.slot >= 0)
     if derivative < 2:
         right, left = ((table.value, table.value_before), (table.slope, table.slope_before))[derivative]
-        return np.asarray(np.where(at == table.time.size - 1, left[at, channel], right[at, channel]))
+        found = right[at, channel]
+        if at[-1] == table.time.size - 1:
+            found[-1] = left[-1, channel]
+        return np.asarray(found)
     segment = np.minimum(at, table.time.size - 2)
     length = np.diff(table.time)[segment]
     rise = table.value_before[segment + 1, channel] - table.value[segment, channel]

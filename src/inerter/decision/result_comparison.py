@@ -18,6 +18,7 @@ from inerter.files.common.listing import check_unchanged
 from inerter.files.common.suggest import some
 from inerter.files.study.chosen_design import load_results
 from inerter.files.study.loading import load_study
+from inerter.files.study.results import units_by_name
 from inerter.files.study.running import RESOLVED
 from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.statements import Severity, Statement
@@ -115,7 +116,7 @@ def compare_results(first: Path, second: Path) -> ResultComparison:
         tuple(_value_changes(*common, one, two)),
         tuple(_lacking(names, labels[0], labels[1])),
         tuple(_lacking(names, labels[1], labels[0])),
-        dict(zip(one["parameter"].values.tolist(), one["parameter_unit"].values.tolist(), strict=True)),
+        units_by_name(one, "parameter"),
     )
 
 
@@ -134,7 +135,7 @@ def _lacking(names: list[str], own: list[list[str]], others: list[list[str]]) ->
 
 def _value_changes(first: xr.Dataset, second: xr.Dataset, *whole: xr.Dataset) -> Iterator[ValueChange]:
     places = swept_places(whole[0])
-    units = [dict(zip(r["index"].values.tolist(), r["index_unit"].values.tolist(), strict=True)) for r in whole]
+    units = [units_by_name(results, "index") for results in whole]
     points = [first[place].values.tolist() for place in places]
     shared = set(first["layout"].values.tolist())
     for layout in (name for name in layouts(whole[0]) if name in shared):

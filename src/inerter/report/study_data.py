@@ -12,6 +12,7 @@ import xarray as xr
 
 from inerter.figures.labels import swept_places
 from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
+from inerter.files.study.results import units_by_name
 from inerter.files.study.running import StudyResult
 from inerter.files.study.summary import design_rows
 from inerter.files.study.tasks import by_task
@@ -57,7 +58,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
     """Data of each design and method, for JSON."""
     data, study = result.data, result.study
     errors = [name for name in ("standard_error", "improvement_error", "realisations") if _is_known(data, name)]
-    units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
+    units = units_by_name(data, "index")
     parameters = data.parameter.values.tolist()
     for case, method, row in design_rows(data, study):
         swept = {sweep.label: value for sweep, value in zip(study.sweeps, case.swept, strict=True)}

@@ -318,6 +318,11 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
     return labels
 
 
+def units_by_name(data: xr.Dataset, of: str) -> dict[str, str]:
+    """Units of the indices or design variables of a dataset, by name; `of` is "index" or "parameter"."""
+    return dict(zip(data[of].values.tolist(), data[f"{of}_unit"].values.tolist(), strict=True))
+
+
 def is_measured(study: Study) -> bool:
     """Whether the road of a study is the line of a measured profile, of which values have common errors."""
     return study.road is not None and study.road.shape is not None

@@ -12,7 +12,7 @@ import xarray as xr
 from inerter.atomic_io import open_text
 from inerter.files.study.cases import Case, cases
 from inerter.files.study.conditions import IN_CONDITIONS, condition_labels
-from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain
+from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain, units_by_name
 from inerter.files.study.study import Study
 from inerter.formatting import label_with_unit
 from inerter.table import csv_cells
@@ -34,16 +34,14 @@ def bounds_text(active: Mapping[str, str]) -> str:
 
 
 def _header(study: Study, data: xr.Dataset) -> list[str]:
-    parameters = zip(data.parameter.values.tolist(), data.parameter_unit.values.tolist(), strict=True)
-    units = zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True)
     return [
         *("layout", "index", "method"),
         *(label_with_unit(sweep.label, sweep.unit) for sweep in study.sweeps),
         *("value", "unit", "improvement_percent", "standard_error", "error_bound", "status"),
         *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
-        *(label_with_unit(name, unit) for name, unit in parameters),
+        *(label_with_unit(name, unit) for name, unit in units_by_name(data, "parameter").items()),
         *("at_bound", "starts", "agreed"),
-        *(label_with_unit(f"{name} of this design", unit) for name, unit in units),
+        *(label_with_unit(f"{name} of this design", unit) for name, unit in units_by_name(data, "index").items()),
         *(
             text
             for limit in study.limits
@@ -86,7 +84,7 @@ def design_rows(data: xr.Dataset, study: Study) -> Iterator[tuple[Case, str, dic
 def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
     more, parts = _more(study), _on_parts(data)
     parameters = data.parameter.values.tolist()
-    units = dict(zip(data["index"].values.tolist(), data.index_unit.values.tolist(), strict=True))
+    units = units_by_name(data, "index")
     for case, method, row in design_rows(data, study):
         yield [
             case.layout,

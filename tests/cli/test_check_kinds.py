@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from folders import EXAMPLES
+from study_text import study_text
 
 from inerter.cli.main import call
 from inerter.files.common.kinds import kind_of, kinds
@@ -178,28 +179,11 @@ def test_a_simulation_on_a_road_says_its_class_and_doubts_what_no_road_is(tmp_pa
     assert "Warning: no half car is like this one: sprung mass 0.3635 kg, less than 2 kg." in said
 
 
-FRICTION = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "250 kg"
-unsprung_mass = "35 kg"
-tyre_stiffness = "150 kN/m"
-[road]
-speed = "25 m/s"
-roughness = "5e-7 m^3/cycle"
-[elements]
-k = "60 kN/m"
-c = "3 kN s/m"
-f = "30 N"
-[layouts]
-S = "k | c | f"
-[indices.own]
-kind = "KIND"
-element = "f"
-[study]
-indices = ["own"]
-evaluate = ["METHOD"]
-"""
+FRICTION = study_text(
+    'indices = ["own"]\nevaluate = ["METHOD"]',
+    elements='k = "60 kN/m"\nc = "3 kN s/m"\nf = "30 N"',
+    layouts='S = "k | c | f"\n[indices.own]\nkind = "KIND"\nelement = "f"',
+)
 
 
 @pytest.mark.parametrize("kind", ["element-force", "element-stroke", "element-velocity"])

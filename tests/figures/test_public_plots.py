@@ -9,6 +9,7 @@ import pytest
 import scipy.signal
 import xarray as xr
 from matplotlib.lines import Line2D
+from study_text import study_text
 from wang_su import J1, ROAD
 
 import inerter as it
@@ -202,27 +203,9 @@ def test_a_response_to_several_sources_has_no_phase() -> None:
     assert len(gain.lines) == 1
 
 
-STUDY = """
-[vehicle]
-model = "quarter-car"
-sprung_mass = "250 kg"
-unsprung_mass = "35 kg"
-tyre_stiffness = "150 kN/m"
-[road]
-roughness = "5e-7 m^3/cycle"
-speed = "25 m/s"
-[elements]
-k = "60 kN/m"
-c = "2 kN s/m"
-b = "50 kg"
-[layouts]
-S1 = "k | c"
-S2 = "k | c | b"
-[study]
-indices = ["J1"]
-evaluate = ["norm"]
-baseline = "S1"
-"""
+STUDY = study_text(
+    'indices = ["J1"]\nevaluate = ["norm"]\nbaseline = "S1"', elements='k = "60 kN/m"\nc = "2 kN s/m"\nb = "50 kg"'
+)
 
 
 def swept(folder: Path, line: str) -> xr.Dataset:

@@ -193,6 +193,11 @@ BETTER = Improvement(16.0, 0.02)
             "S2 and S3 are equally good (difference 0.10 +- 0.30 %) in ride comfort (J1), 10.0 % better than S1.",
         ),
         (
+            [BASE, design("S2", 2.943, by=Improvement(-0.3, bound=3.0)), design("S3", 2.94, by=Improvement(2.0))],
+            VerdictKind.ANSWER,
+            "S2 and S3 are equally good (difference 0.10 +- 0.30 %) in ride comfort (J1); S3 is 2.0 % better than S1.",
+        ),
+        (
             [BASE, design("S3", 2.999, by=Improvement(0.03))],
             VerdictKind.ANSWER,
             "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.0 %).",

@@ -126,6 +126,10 @@ def _sentence(contest: Contest, rest: Sequence[DesignResult]) -> tuple[str, bool
         )
     if len(winners) == 1:
         return f"{lead.name} is {by.words} than {base.name} in {lead.goal.words}{_friction(contest)}.", True
+    if by.is_equal:  # as good as the best, which is better than the baseline
+        known = [(one.name, own) for one in winners if (own := one.goal.improvement) is not None and not own.is_equal]
+        better = "".join(f"; {name} is {own.words} than {base.name}" for name, own in known[:1])
+        return f"{_best(contest)} in {lead.goal.words}{_friction(contest)}{better}.", True
     return f"{_best(contest)} in {lead.goal.words}, {by.words} than {base.name}{_friction(contest)}.", True
 
 

@@ -30,6 +30,7 @@ Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _FASTEST_CLOCK = 0.01  # relative difference of two clocks, at most
 _RESONANCES = (15.0, 40.0, 100.0)  # [Hz] starting values of a frame resonance
+_CORNERS, _FASTEST_CORNER = (0.3, 3.0), 300.0  # [rad/s] of high-pass filters: starting values, and the largest
 _MARGIN = 10  # samples to either side of repaired ones that are not compared
 _SETTLED = 0.3  # [s] after a joint that are not compared, until the transient has decayed
 _NOTHING = 1e-5  # of its largest value, below which a change of a parameter is ignored
@@ -47,6 +48,10 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
     yield _cross_talk("displacement", "N/m", peak / stroke)
     yield _cross_talk("velocity", "N s/m", peak / fastest)
     yield _frame()
+    yield _high_passed_force()
+    yield _high_passed_displacement()
+    for ends in (("upper",), ("lower",), ("upper", "lower")):
+        yield _end_stop(ends, stroke, peak)
     for e, place in zip(problem.experiments, places, strict=False):
         lines = (f for f in place.patterns if f.kind is MisfitPattern.LINE and f.numbers["foreign"])
         for found in lines:
@@ -124,6 +129,58 @@ def _frame() -> Hypothesis:
 
     starts = tuple({frequency.name: f, ratio.name: 0.05} for f in _RESONANCES)
     return Hypothesis(Suspect.FRAME, (frequency, ratio), read=read, details=details, starts=starts)
+
+
+def _high_passed_force() -> Hypothesis:
+    """A force without its slow part: that of a charge amplifier, or of AC coupling."""
+    rate = Unknown("high-pass of the force", "rad/s", 0.0, _FASTEST_CORNER, 0.1)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        b, a = bilinear([1.0, 0.0], [1.0, values[rate.name]], 1.0 / e.record.interval)
+        return np.asarray(lfilter(b, a, force))
+
+    starts = tuple({rate.name: corner} for corner in _CORNERS)
+    return Hypothesis(
+        Suspect.HIGH_PASSED_FORCE, (rate,), read=read, details=lambda values: {"rate": values[rate.name]}, starts=starts
+    )
+
+
+def _high_passed_displacement() -> Hypothesis:
+    """A displacement without its slow part, as of AC coupling or integrated accelerations, to which it is added."""
+    rate = Unknown("high-pass of the displacement", "rad/s", 0.0, _FASTEST_CORNER, 0.1)
+
+    def change_motion(e: Experiment, values: Values) -> Experiment:
+        motion = e.motion
+        slow = values[rate.name] * (motion.displacement - motion.displacement.mean())
+        lost = np.cumsum(slow) * e.record.interval
+        return e.with_motion(motion.displacement + lost, motion.velocity + slow)
+
+    return Hypothesis(
+        Suspect.HIGH_PASSED_DISPLACEMENT,
+        (rate,),
+        change_motion=change_motion,
+        details=lambda values: {"rate": values[rate.name]},
+        starts=tuple({rate.name: corner} for corner in _CORNERS),
+    )
+
+
+def _end_stop(ends: tuple[str, ...], stroke: float, peak: float) -> Hypothesis:
+    """Springs in parallel with the device that it touches within the same distance of these ends of the motion."""
+    depth = Unknown(f"reach of the {' and '.join(ends)} stop", "m", 0.0, stroke, 0.1 * stroke)
+    stiffness = Unknown("stiffness of the stop", "N/m", 0.0, 1e3 * peak / stroke, 0.1 * peak / stroke)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        z, reach = e.motion.displacement, values[depth.name]
+        above = np.maximum(z - z[e.kept].max() + reach, 0.0) if "upper" in ends else 0.0 * z
+        below = np.maximum(z[e.kept].min() + reach - z, 0.0) if "lower" in ends else 0.0 * z
+        stop = values[stiffness.name] * (above - below)[: force.size]
+        return np.asarray(force + read_by_load_cell(stop, e))
+
+    def details(values: Values) -> Details:
+        return {"ends": ends, "reach": values[depth.name], "stiffness": values[stiffness.name]}
+
+    start = {depth.name: 0.15 * stroke, stiffness.name: peak / stroke}
+    return Hypothesis(Suspect.END_STOP, (depth, stiffness), read=read, details=details, starts=(start,))
 
 
 def _hum(record: Record, frequency: float, amplitude: float) -> Hypothesis:

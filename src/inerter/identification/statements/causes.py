@@ -41,6 +41,9 @@ class Suspect(StrEnum):
     CLOCK_DRIFT = "clock drift"
     CROSS_TALK = "cross-talk"
     FRAME = "frame resonance"
+    HIGH_PASSED_FORCE = "high-pass filtered force"
+    HIGH_PASSED_DISPLACEMENT = "high-pass filtered displacement"
+    END_STOP = "end stop"
     HUM = "hum"
     CHANGED_DEVICE = "changed device"
     SPIKES = "spikes"
@@ -109,6 +112,16 @@ def _clock_text(d: Details) -> str:
         f"the clocks of force and displacement differ by {format_number(1e6 * abs(d['rate']), 3)} ppm, so that the "
         f"force is {format_quantity(abs(d['growth']), 's', 3)} {way} at the end than at the start"
     )
+
+
+def _high_pass_text(d: Details) -> str:
+    return format_quantity(0.5 * d["rate"] / math.pi, "Hz", 2)
+
+
+def _end_stop_text(d: Details) -> str:
+    stiffness, reach = format_quantity(d["stiffness"], "N/m", 2), format_quantity(d["reach"], "m", 2)
+    ends = f"{d['ends'][0]} end" if len(d["ends"]) == 1 else "ends"
+    return f"an end stop of {stiffness} is touched within {reach} of the {ends} of the motion"
 
 
 def _hum_text(d: Details) -> str:
@@ -203,6 +216,14 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
         f"the frame of the load cell resonates at {format_quantity(d['frequency'], 'Hz', 3)} (damping ratio "
         f"{format_number(d['ratio'], 2)})"
     ),
+    Suspect.HIGH_PASSED_FORCE: lambda d: (
+        f"the force was high-pass filtered at {_high_pass_text(d)}, as by a piezoelectric load cell or AC coupling"
+    ),
+    Suspect.HIGH_PASSED_DISPLACEMENT: lambda d: (
+        f"the displacement was high-pass filtered at {_high_pass_text(d)}, as by AC coupling or integration of an "
+        f"acceleration"
+    ),
+    Suspect.END_STOP: _end_stop_text,
     Suspect.HUM: _hum_text,
     Suspect.CHANGED_DEVICE: _changed_device_text,
     Suspect.SPIKES: lambda d: f"spikes replace samples at {_places_text(d)}",
@@ -255,6 +276,11 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
     Suspect.CLOCK_DRIFT: _constant("sample both channels with one clock"),
     Suspect.CROSS_TALK: _constant("separate the cables of the sensors, and read the load cell without the device"),
     Suspect.FRAME: _constant("stiffen the frame, or excite well below its resonance"),
+    Suspect.HIGH_PASSED_FORCE: _constant(
+        "measure static forces too (DC coupling, a longer time constant), or move well above that frequency"
+    ),
+    Suspect.HIGH_PASSED_DISPLACEMENT: _constant("measure the displacement down to standstill, or move well above it"),
+    Suspect.END_STOP: _constant("move less, or farther from the end of the stroke"),
     Suspect.HUM: _constant("check grounding and shielding, and use an anti-aliasing filter"),
     Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),
     Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.signal import bilinear, lfilter
 
-from inerter.identification.experiment import Experiment, experiment_of, load_cell_output
+from inerter.identification.experiment import Experiment, experiment_of, free_motions, load_cell_output
 from inerter.identification.fit import Localisation
 from inerter.identification.hypotheses import Hypothesis, Unknown, Values, read_by_load_cell
 from inerter.identification.problem import FitProblem
@@ -50,6 +50,8 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
     yield _frame()
     yield _high_passed_force()
     yield _high_passed_displacement()
+    if not any(element.acts for element in problem.rig.device.elements()):
+        yield _begun_in_motion(problem)
     for ends in (("upper",), ("lower",), ("upper", "lower")):
         yield _end_stop(ends, stroke, peak)
     for e, place in zip(problem.experiments, places, strict=False):
@@ -129,6 +131,25 @@ def _frame() -> Hypothesis:
 
     starts = tuple({frequency.name: f, ratio.name: 0.05} for f in _RESONANCES)
     return Hypothesis(Suspect.FRAME, (frequency, ratio), read=read, details=details, starts=starts)
+
+
+def _begun_in_motion(problem: FitProblem) -> Hypothesis:
+    """Records that look as if they began at rest, and a linear device that moved before: its free motions are added."""
+    space, bare = problem.space, replace(problem, assumed=(), systems={})
+    least = dict(zip(space.names, space.lower.tolist(), strict=True))
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        system = bare.system(space.coordinates_of({n: values.get(n, least[n]) for n in space.names}), e.record)
+        if not e.kept[0] or system is None:
+            return force
+        free = free_motions(replace(e, kept=np.arange(e.size) > 0), system, force.size)
+        used = e.kept[: force.size].copy()
+        used[0] = False
+        columns = np.column_stack([free, np.ones(force.size)])[used]
+        amplitudes = np.linalg.lstsq(columns, (e.record.force[: force.size] - force)[used], rcond=1e-10)[0]
+        return np.where(used, force + free @ amplitudes[:-1], e.record.force[: force.size])
+
+    return Hypothesis(Suspect.IN_MOTION, read=read)
 
 
 def _high_passed_force() -> Hypothesis:

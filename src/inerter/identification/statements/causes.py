@@ -44,6 +44,7 @@ class Suspect(StrEnum):
     HIGH_PASSED_FORCE = "high-pass filtered force"
     HIGH_PASSED_DISPLACEMENT = "high-pass filtered displacement"
     END_STOP = "end stop"
+    IN_MOTION = "motion before the record"
     HUM = "hum"
     CHANGED_DEVICE = "changed device"
     SPIKES = "spikes"
@@ -224,6 +225,7 @@ _SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
         f"acceleration"
     ),
     Suspect.END_STOP: _end_stop_text,
+    Suspect.IN_MOTION: _always("the device already moved when the record began, although the table was nearly at rest"),
     Suspect.HUM: _hum_text,
     Suspect.CHANGED_DEVICE: _changed_device_text,
     Suspect.SPIKES: lambda d: f"spikes replace samples at {_places_text(d)}",
@@ -280,6 +282,7 @@ _REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
         "measure static forces too (DC coupling, a longer time constant), or move well above that frequency"
     ),
     Suspect.HIGH_PASSED_DISPLACEMENT: _constant("measure the displacement down to standstill, or move well above it"),
+    Suspect.IN_MOTION: _constant("begin the record at rest, or discard its first samples (lead)"),
     Suspect.END_STOP: _constant("move less, or farther from the end of the stroke"),
     Suspect.HUM: _constant("check grounding and shielding, and use an anti-aliasing filter"),
     Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),

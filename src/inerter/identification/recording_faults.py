@@ -143,11 +143,10 @@ def _begun_in_motion(problem: FitProblem) -> Hypothesis:
         if not e.kept[0] or system is None:
             return force
         free = free_motions(replace(e, kept=np.arange(e.size) > 0), system, force.size)
-        used = e.kept[: force.size].copy()
-        used[0] = False
+        used = e.kept[: force.size] & (np.arange(force.size) > 0)
         columns = np.column_stack([free, np.ones(force.size)])[used]
         amplitudes = np.linalg.lstsq(columns, (e.record.force[: force.size] - force)[used], rcond=1e-10)[0]
-        return np.where(used, force + free @ amplitudes[:-1], e.record.force[: force.size])
+        return np.concatenate([e.record.force[:1], (force + free @ amplitudes[:-1])[1:]])
 
     return Hypothesis(Suspect.IN_MOTION, read=read)
 
@@ -308,7 +307,11 @@ def _at_readings(experiments: Sequence[Experiment]) -> Hypothesis | None:
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         mask = read_at.get(id(e.record))
-        return force if mask is None else np.where(mask[: force.size], force, e.record.force[: force.size])
+        if mask is None:
+            return force
+        mask, left = mask[: force.size], e.record.force[: force.size] - force
+        offset = float(np.mean(left[mask]))  # of the load cell, as at the readings
+        return np.where(mask, force, force + left - offset)
 
     named = {"channels": tuple(dict.fromkeys(channels))}
     hypothesis = Hypothesis(Suspect.SLOWER, change_motion=change_motion, read=read, details=lambda values: named)

@@ -173,6 +173,30 @@ def test_a_waviness_far_from_two_makes_a_line_of_two_inaccurate_and_says_by_how_
     assert "mostly from line of the road" in found.status.message
 
 
+@pytest.mark.campaign
+def test_the_spectrum_of_a_short_profile_scatters_by_more_than_the_bound():
+    """Gaussian profiles of a known density of waviness 2, at points without shorter waves: the spread of J1 on each."""
+    rng, speed, step = np.random.default_rng(8610), 20.0, 0.1
+    car = it.QuarterCar(300.0, 40.0, 2e5, it.Spring(2e4) | it.Damper(1.5e3))
+    known = it.evaluate(car, it.RideComfort(it.Road(0.5 * 64e-6 * 0.01, speed)), it.Norm()).value
+
+    def found(length):
+        count = round(length / step)
+        n = np.arange(1, count // 2) / length
+        lines = np.sqrt(64e-6 * (n / 0.1) ** -2.0 / length) * (rng.standard_normal((2, n.size)).T @ [1.0, 1.0j])
+        heights = np.fft.irfft(0.5 * count * np.concatenate([[0.0], lines, [0.0]]), count)
+        spectrum = it.road_spectrum(it.Profile(step * np.arange(count), heights), sampling="filtered")
+        return it.evaluate(car, it.RideComfort(it.measured_road(spectrum, speed)), it.Norm())
+
+    short, long = ([found(length) for _ in range(count)] for length, count in ((1e3, 40), (16e3, 8)))
+    spread = [float(np.std([one.value / known for one in several])) for several in (short, long)]
+    assert 0.012 < spread[0] < 0.03
+    assert spread[1] < 0.012
+    beyond = np.mean([abs(one.value / known - 1.0) > one.error_bound for one in short])
+    assert 0.15 < beyond < 0.6
+    assert abs(np.mean([one.value / known for one in short]) - 1.0) < 3.0 * spread[0] / math.sqrt(40)
+
+
 def test_another_road_takes_its_place():
     car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3))
     road = it.Road(3e-7, 17.0)

@@ -211,7 +211,7 @@ export function percent(value, error) {
 }
 
 /** @param {{improvement_percent?: number | null, improvement_status?: string | null, tie?: boolean | null}} result */
-const better = ({ improvement_percent: value, improvement_status: status, tie }) =>
+export const better = ({ improvement_percent: value, improvement_status: status, tie }) =>
   (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");
 
 /** The goal in each condition of the study: of the selected layout, and of the baseline if that is another one.

@@ -4,9 +4,9 @@ import { scaled, unitFor, withUnit } from "../state/scale.js";
 import { Chip, Select, Table, formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { Being, useLate } from "../parts/clock.js";
-import { Doubts, Unchosen, isOk } from "../parts/doubts.js";
+import { Doubts, Unchosen } from "../parts/doubts.js";
 import { answerOf, comparable, comparedOf } from "../questions.js";
-import { Measured, membersOf, percent } from "./answers.js";
+import { Against, Measured, better, membersOf } from "./answers.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Choice } from "../questions.js" */
@@ -75,31 +75,19 @@ function Comparison({ state, answer, compared }) {
       ${different.map((name) => html`<tr key=${name}><th scope="row">${name}</th>
         ${columns.map(({ numbers }, i) => html`<td class="number" key=${i}>${numbers[name] ?? "–"}</td>`)}</tr>`)}
   <//>
-  <p class="quiet">Differences in per cent of ${columns[0].name}. All designs are on the road of this study, and where
-    they are simulated on the same roads; ± is the standard error of the difference. Bold: the best, and what is as
+  <p class="quiet">Improvements on ${columns[0].name}: + is better. All designs are on the road of this study, and where
+    they are simulated on the same roads; ± is the standard error of the improvement. Bold: the best, and what is as
     good.</p>`;
 }
 
-/** A value, and what lies between it and the first one's.
+/** A value, and how much better it is than the first one's.
  * @param {{result: any, factor: number, first: boolean, unchosen: boolean}} props */
 function Value({ result, factor, first, unchosen }) {
   const { value, best, message } = result;
   return html`<td class=${`number ${best ? "best" : ""}`} title=${message} data-value=${value}>
-    <${Measured} result=${scaled(result, factor)} />${!first
-    && html`<${Difference} result=${result} unchosen=${unchosen} />`}</td>`;
-}
-
-/** What lies between them, first what makes that doubtful. @param {{result: any, unchosen: boolean}} props */
-function Difference({ result: { improvement_percent: better, improvement_error_percent: error,
-  improvement_status: status, tie }, unchosen }) {
-  if (unchosen) return html`<div class="difference quiet">not chosen yet</div>`;
-  if (typeof better !== "number") return null;
-  const doubt = isOk(status) ? "" : `${status}: `;
-  if (tie) return html`<div class="difference quiet">${doubt}as good${error ? `, ${percent(better, error)}` : ""}
-    </div>`;
-  const word = better > 0 ? "better" : "worse";
-  return html`<div class=${`difference ${doubt ? "quiet" : better > 0 ? "good" : "bad"}`}>
-    ${doubt}${percent(Math.abs(better), error)} ${word}</div>`;
+    <${Measured} result=${scaled(result, factor)} />${!first && html`<div class=${`difference ${
+      unchosen ? "" : better(result)}`}><${Against} row=${{ ...result, status: null }} unchosen=${unchosen} /></div>`}
+    </td>`;
 }
 
 /** Keeping the design that is edited under a name, and taking kept ones back.

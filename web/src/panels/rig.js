@@ -134,6 +134,8 @@ function Fit({ store, api, job, main }) {
   const struts = Object.keys(strutTexts(store.get()));
   const several = struts.length > 1;
   const words = store.get().about?.model_words?.[result?.model];
+  /** @type {{identified: boolean, sentence: string}[]} */
+  const parameters = result?.device ? Object.values(result.parameters) : [];
   return html`<section class="fit" data-state=${job.state}>
     <${JobHead} store=${store} api=${api} job=${job} />
     ${job.sentence && html`<p class=${job.state === "failed" ? "problem" : "quiet"}>${job.sentence}</p>`}
@@ -142,12 +144,12 @@ function Fit({ store, api, job, main }) {
       message: result.reason }]} />
       <${Causes} store=${store} api=${api} result=${result} main=${main && !result.device} />
       <p><b>${result.model}</b>${words && `: ${words}`}</p>
-      <${Table} label="Identified values" heads=${["parameter", "value", "95 % interval", ""]}>
-        ${Object.entries(result.parameters ?? {}).map(([name, each]) => html`<tr key=${name}>
-          <th scope="row">${name}</th>
-          ${[0, 1].map((i) => html`<td class="number">${result.shown[name][i]}</td>`)}
-          <td>${each.identified ? "" : capital(each.sentence.replace(`${name}: `, ""))}</td></tr>`)}
+      <${Table} label="Identified values" heads=${["parameter", "value", "95 % interval"]}>
+        ${Object.entries(result.shown).map(([name, [value, interval]]) => html`<tr key=${name}>
+          <th scope="row">${name}</th><td class="number">${value}</td><td class="number">${interval}</td></tr>`)}
       <//>
+      ${parameters.filter(({ identified }) => !identified).map(({ sentence }) =>
+        html`<p key=${sentence}>${sentence}</p>`)}
       ${(result.findings ?? []).map((/** @type {string} */ each) => html`<p key=${each} class="quiet">${each}</p>`)}
       ${result.device
         ? html`<p class="row">${several && "Take the device into the editor, in parallel with the"}

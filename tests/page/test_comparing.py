@@ -80,7 +80,7 @@ def _compared(visitor: Visitor, names: list[str]) -> list[list[dict[str, Any]]]:
 
 def _said(two: it.Comparison, scatters: bool) -> tuple[str, ...]:
     """What is to be read of a difference."""
-    words = ("as good",) if two.is_tie else ("+",) if two.difference.value < 0.0 else ("−",)  # noqa: RUF001
+    words = ("as good",) if two.is_tie else ("+",) if two.difference.value < 0.0 else ("−",)
     return (*words, "±") if scatters and not (two.is_tie and two.percent_error == 0.0) else words
 
 

@@ -62,7 +62,7 @@ def _compared(visitor: Visitor, names: list[str]) -> list[list[dict[str, Any]]]:
     """What stands in the rows of the indices, when the columns are these."""
     page = visitor.page
     page.wait_for_function(
-        """names => [...document.querySelectorAll("[aria-label=Comparison] thead th")].slice(1)
+        """names => [...document.querySelectorAll("[aria-label=Comparison] thead th")]
           .map(each => each.textContent).join() === names.join()""",
         arg=names,
     )

@@ -18,7 +18,6 @@ from folders import EXAMPLES
 from study_text import PAPER_CAR, study_text
 
 AXE = pytest.importorskip("axe_playwright_python.sync_playwright")
-SERIOUS = ("serious", "critical")
 SIZES = {"wide": (1280, 800), "narrow": (420, 800), "projector": (1920, 1080)}
 THEMES = {"light": SIZES, "dark": {"wide": SIZES["wide"]}}  # whose layout is the same
 TABS = ("response", "history", "compare", "margins", "tolerance", "work", "rig")
@@ -61,7 +60,7 @@ STUDIES: dict[str, Callable[[], str] | None] = {
 
 
 def _faults(visitor: Visitor, within: tuple[str, ...] = ()) -> list[str]:
-    """Serious faults that axe finds in the page or in parts of it, each with the first element that has it."""
+    """Faults that axe finds in the page or in parts of it, each with the first element that has it."""
     page = visitor.page
     if not page.evaluate("() => 'axe' in window"):
         page.evaluate(AXE.Axe().axe_script)
@@ -69,7 +68,7 @@ def _faults(visitor: Visitor, within: tuple[str, ...] = ()) -> list[str]:
         "parts => axe.run(parts.length ? parts : document, { resultTypes: ['violations'] }).then(all => all.violations)"
     )
     found = page.evaluate(run, list(within))
-    return [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in found if each["impact"] in SERIOUS]
+    return [f"{each['id']}: {each['nodes'][0]['html'][:200]}" for each in found]
 
 
 def _too_wide(visitor: Visitor) -> int:

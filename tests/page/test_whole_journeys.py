@@ -119,7 +119,7 @@ def test_an_own_car_from_the_first_screen_to_the_report(
         designs = page.get_by_role("group", name="Designs to compare")
         person.press(designs.get_by_role("button", name=layout, exact=True))
     page.wait_for_selector("td.best")
-    assert page.locator("[aria-label=Comparison] thead th").all_inner_texts() == ["", "S1", "S3"]
+    assert page.locator("[aria-label=Comparison] thead th").all_inner_texts() == ["S1", "S3"]
 
     person.press(page.locator("#tab-tolerance"))
     with page.expect_request("**/api/panel/tolerance") as request:

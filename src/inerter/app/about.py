@@ -77,7 +77,7 @@ def about() -> dict[str, Any]:
             for kind in KINDS.values()
         ],
         "exports": [
-            {"key": key, **{name: getattr(kind, name) for name in ("description", "suffixes", "requires")}}
+            {"key": key, **{name: getattr(kind, name) for name in ("description", "suffixes", "requires", "takes")}}
             for key, kind in EXPORTS.items()
             if kind.is_file
         ],

@@ -9,7 +9,8 @@ import { designOf, goalOf } from "../questions.js";
 import { download, fileName } from "../remembering.js";
 import { SearchFirst } from "./search.js";
 
-/** @typedef {{key: string, description: string, suffixes: string[], requires: string}} ExportKind */
+/** @typedef {{key: string, description: string, suffixes: string[], requires: string,
+ *   takes: string[]}} ExportKind */
 
 const ABOUT = "export"; // messages
 
@@ -18,8 +19,11 @@ export function ExportMenu({ store, api }) {
   const state = store.get();
   const { study, layout } = state.history.present;
   const design = designOf(state.history.present);
-  const [linear, setLinear] = useState(false);
+  const [isLinearWanted, setLinearWanted] = useState(false);
   const isNonlinear = elementsIn(state, layout).some((name) => kindOf(state, name)?.switches);
+  const linear = isNonlinear && isLinearWanted;
+  const kinds = (state.about?.exports ?? []).filter((/** @type {ExportKind} */ kind) => !linear
+    || kind.takes.includes("linear"));
   /** @param {Event} event @param {ExportKind} kind @param {string} suffix */
   const save = async ({ currentTarget }, { key: kind }, suffix) => {
     /** @type {Element} */ (currentTarget).closest("details")?.removeAttribute("open");
@@ -39,9 +43,9 @@ export function ExportMenu({ store, api }) {
     ${isSearched(state, layout) ? html`<${SearchFirst} layout=${layout} />`
       : html`<${Unchosen} state=${state} designs=${[design]} />
       ${study.conditions?.length > 0 && html`<p class="quiet">${state.about?.export_note}</p>`}
-      ${isNonlinear && html`<label><input type="checkbox" checked=${linear} onChange=${() => setLinear(!linear)} />
-        linear: without friction and gaps</label>`}
-      <ul class="exports">${(state.about?.exports ?? []).map((/** @type {ExportKind} */ kind) => html`<li
+      ${isNonlinear && html`<label><input type="checkbox" checked=${linear}
+        onChange=${() => setLinearWanted(!linear)} /> linear: without friction and gaps</label>`}
+      <ul class="exports">${kinds.map((/** @type {ExportKind} */ kind) => html`<li
         key=${kind.key}><span>${kind.description}${kind.requires
           && html` <span class="quiet">requires ${kind.requires}</span>`}</span>
         ${kind.suffixes.map((suffix) => html`<button type="button" key=${suffix} class="edged"

@@ -56,7 +56,7 @@ export const DropDown = ({ title, onOpen, id, children }) => html`<details class
 export const Table = ({ label, heads, children, ...attributes }) => html`<div class="scroll" tabindex="0"
   role="region" aria-label=${label}><table ...${attributes}><thead><tr>${heads.map((head) => {
     const [text, title] = [head].flat();
-    return html`<th scope="col" title=${title}>${text}</th>`;
+    return text ? html`<th scope="col" title=${title}>${text}</th>` : html`<td></td>`;
   })}</tr></thead><tbody>${children}</tbody></table></div>`;
 
 /** A field of which the text is taken over with Enter, or on leaving it; what is being typed stays while answers

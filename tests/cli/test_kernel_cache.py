@@ -161,6 +161,43 @@ def test_a_changed_bit_is_found_before_the_code_runs(tmp_path: Path, temporary: 
     assert compile_with(cache, temporary) == ("42.0\n", "")
 
 
+OF_SIZES = """
+from inerter.kernels.decorators import kernel
+
+
+def times(n):
+    @kernel("times", "float64(float64)")
+    def scaled(x):
+        return n * x
+
+    return scaled
+"""
+
+
+@pytest.mark.campaign
+def test_damage_to_the_code_for_one_size_leaves_that_for_others(tmp_path: Path) -> None:
+    (tmp_path / "sizes.py").write_text(OF_SIZES, encoding="utf-8")
+    (tmp_path / "__init__.py").touch()
+    path = os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
+    environment = {**os.environ, "PYTHONPATH": path, "XDG_CACHE_HOME": str(tmp_path / "cache")}
+
+    def compile_sizes(*sizes: float) -> tuple[str, str]:
+        program = f"from sizes import times; print(*(times(size)(2.0) for size in {sizes}))"
+        done = subprocess.run(
+            [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True, timeout=280
+        )
+        return done.stdout, SLOW.sub("", done.stderr)
+
+    assert compile_sizes(3.0)[0] == "6.0\n"
+    (first,) = (tmp_path / "cache").rglob("*.nbi")
+    assert compile_sizes(5.0)[0] == "10.0\n"
+    first.write_bytes(first.read_bytes()[:-1])
+    assert compile_sizes(5.0) == ("10.0\n", "")
+    stdout, stderr = compile_sizes(3.0)
+    assert stdout == "6.0\n"
+    assert "are damaged" in stderr
+
+
 SEVERAL = """
 from inerter.kernels.decorators import kernel
 

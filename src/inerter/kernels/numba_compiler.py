@@ -23,6 +23,7 @@ from numba.core import cgutils, sigutils, typeinfer
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 from numba.core.codegen import JITCodeLibrary
 from numba.core.registry import CPUDispatcher, cpu_target
+from numba.core.serialize import dumps
 from numba.experimental import function_type
 
 from inerter.kernels.cache import announce, warn_of_damage, warn_of_no_cache
@@ -137,6 +138,10 @@ class _Cache(FunctionCache):
                 Path(self._cache_path).rmdir()
             self._cache_path = str(folder)
         base: Any = self._impl.filename_base
+        if function.__closure__:  # an index of its own: two processes that save at once would lose one of two entries
+            contents = tuple(cell.cell_contents for cell in function.__closure__)
+            given: Any = dumps(contents)  # type: ignore[no-untyped-call]
+            base += f"-{hashlib.sha256(given).hexdigest()[:16]}"
         self._cache_file = _CheckedFiles(self._cache_path, base, "")  # type: ignore[no-untyped-call]
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:

@@ -43,6 +43,18 @@ def test_results_are_tables(name: str) -> None:
     assert [one for one in texts if one not in text] == []
 
 
+def test_quantities_of_vehicle_and_seat_have_their_units() -> None:
+    seat = it.Seat(PLAIN, mass=it.free(70.0, 80.0), network=it.Spring(1e4) | it.Damper(500.0))
+    free = replace(
+        seat, vehicle=replace(PLAIN, tyre_stiffness=it.free(100e3, 120e3), sprung_mass=it.free(180.0, 190.0))
+    )
+    best = it.optimise(free, COMFORT, it.Norm(), seed=0)
+    printed, html = str(best), best._repr_html_().replace("&#160;", " ").replace("\N{NO-BREAK SPACE}", " ")
+    for name, unit in {"tyre_stiffness": "kN/m", "sprung_mass": "kg", "mass": "kg"}.items():
+        assert re.search(rf"\b{name} = [\d.]+ {unit}\b", printed)
+        assert re.search(rf"\b{name}\b[^\d]*[\d.]+ {unit}<", html)
+
+
 def test_ends_of_a_narrow_interval_differ() -> None:
     html = it.Estimate(250.0, "kg", standard_error=0.013, interval=(249.974, 250.026))._repr_html_()
     assert "249.974 to 250.026" in html

@@ -34,7 +34,7 @@ from inerter.optimisation.local import LocalOptimum, descend
 from inerter.optimisation.starts import resumable_search, searches_from
 from inerter.validation import check_whole
 from inerter.vehicle.replace_values import with_networks
-from inerter.vehicle.vehicle import Vehicle
+from inerter.vehicle.vehicle import Vehicle, value_units
 from inerter.work.blas_threads import one_blas_thread
 from inerter.work.checkpoints import resume_or_compute
 from inerter.work.progress import report, within
@@ -95,7 +95,7 @@ class Optimum:
     starts = RenamedAttribute("n_starts")
 
     def __str__(self) -> str:
-        units = {element.label: element.unit for element in self.design.mechanism().elements()}
+        units = value_units(self.design)
         values = [
             f"{name} = {typeset(format_quantity(value, units.get(name, '')))}"
             + (f" (at its {self.active_bounds[name]} bound)" if name in self.active_bounds else "")

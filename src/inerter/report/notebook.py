@@ -19,7 +19,7 @@ from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import main_outputs
 from inerter.table import Quantity, Row, Table, cells, columns
 from inerter.uncertainty.tolerance import Tolerance
-from inerter.vehicle.vehicle import Vehicle
+from inerter.vehicle.vehicle import Vehicle, value_units
 
 _MOST = 20  # rows of a ranking or a front
 
@@ -79,7 +79,7 @@ def front_html(found: ParetoFront) -> str:
     """Points of a front with their parameters; the knee is strong."""
     names = list(found.parameters[0]) if found.parameters else []
     heads = [f"{capital(index.title)} {index.symbol}" for index in found.indices]
-    units = _units(found.designs[0]) if found.designs else {}
+    units = value_units(found.designs[0]) if found.designs else {}
     rows = [
         Row(
             cells(
@@ -158,13 +158,8 @@ def _interval(value: float, ends: tuple[float, float], unit: str) -> str:
 
 
 def _parameters(values: Mapping[str, float], design: Vehicle) -> list[Fact]:
-    units = _units(design)
+    units = value_units(design)
     return [(name, Quantity(value, units.get(name, ""))) for name, value in values.items()]
-
-
-def _units(design: Vehicle) -> dict[str, str]:
-    """Units of the elements of a design, by their names."""
-    return {element.label: element.unit for element in design.mechanism().elements()}
 
 
 def _html(table: Table, status: Status, said: Sequence[str] = ()) -> str:

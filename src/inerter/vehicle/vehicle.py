@@ -53,6 +53,17 @@ def check_fixed(design: Vehicle | Mechanism) -> None:
         )
 
 
+def value_units(design: Vehicle) -> dict[str, str]:
+    """SI units of the numbers of a design by name: masses, fields of the vehicle and its stages, elements."""
+    mechanism = design.mechanism()
+    units = {mass.name: "kg m^2" if mass.angle else "kg" for mass in mechanism.masses.values()}
+    below: Any = design
+    while below is not None:
+        units |= {field.name: field.unit for field in fields_of(type(below))}
+        below = getattr(below, "vehicle", None)
+    return units | {element.label: element.unit for element in mechanism.elements()}
+
+
 @dataclass(frozen=True)
 class VehicleModel:
     """Base of a vehicle model of files with a `key`: quantities and mounted networks.

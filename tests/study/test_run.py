@@ -97,9 +97,9 @@ def lines(journal: Path) -> list[str]:
 
 
 HELD = """
-from inerter.files.study import running
-left, run_part = iter(range({count})), running.run_part
-running.run_part = lambda *given, **more: time.sleep(600.0) if next(left, None) is None else run_part(*given, **more)
+from inerter.files.study import parts
+left, run_part = iter(range({count})), parts.run_part
+parts.run_part = lambda *given, **more: time.sleep(600.0) if next(left, None) is None else run_part(*given, **more)
 """
 
 
@@ -192,7 +192,7 @@ def test_interrupted_sweep_resumes_to_the_same_bytes(
 
 @pytest.mark.campaign
 def test_workers_end_with_their_parent(tmp_path: Path) -> None:
-    process = start(["run", str(write(tmp_path, points=400)), "-o", str(tmp_path / "out"), "-j", "2"])
+    process = start(["run", str(write(tmp_path, points=4000)), "-o", str(tmp_path / "out"), "-j", "2"])
     children: list[int] = []
     deadline = time.monotonic() + 250.0
     while len(children) < 2:  # processes are started once the work is known to be long

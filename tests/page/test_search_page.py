@@ -205,6 +205,20 @@ def test_a_button_that_is_pressed_while_a_study_is_being_opened_does_what_it_say
     page.wait_for_selector(f"text={searchable.name} is open")
 
 
+def test_another_button_of_the_mouse_holds_nothing_back(visitor: Visitor, searchable: Path) -> None:
+    """Its release may go to a menu of the browser, and never come."""
+    page = visitor.page
+    held = HeldRequests(visitor, "**/api/panel/mechanism")
+    visitor.open(searchable)
+    page.get_by_role("button", name="Search for the best network").hover()
+    page.mouse.down(button="right")
+    held.end()
+    for route in held.routes:
+        route.continue_()
+    page.wait_for_selector(f"text={searchable.name} is open")
+    page.mouse.up(button="right")
+
+
 def test_the_form_of_a_search_goes_with_its_study(visitor: Visitor) -> None:
     """What the library has said of the study before is not drawn of one that has no such layout."""
     page = visitor.page

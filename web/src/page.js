@@ -109,8 +109,8 @@ export function keepDrawing(store, draw) {
     addEventListener(act, (event) => holdsChoice(event) || now(), { capture: true });
     addEventListener(act, (event) => (holdsChoice(event) && act !== "change") || now());
   }
-  addEventListener("pointerdown", ({ target }) => {
-    pressed = target instanceof Element && target.closest(PRESSED) !== null;
+  addEventListener("pointerdown", ({ button, target }) => { // a menu of the browser may hide another button's release
+    pressed = button === 0 && target instanceof Element && target.closest(PRESSED) !== null;
   }, { capture: true });
   for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => {
     pressed = false;

@@ -41,6 +41,7 @@ function enter(text) {
 async function firstDocument({ study, stamp }) {
   const linked = address.state === null ? null : await unpacked(address.state);
   if (linked) {
+    watchFile(store, api, undefined);
     store.look(linked.view);
     return linked.document;
   }

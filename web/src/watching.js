@@ -1,5 +1,7 @@
-// The file of the command line: that another program has changed it is told, and the page offers to read it again.
+// The file of the command line: that another program has changed it is told, and the page offers to read it again. That
+// no server answers any more is found here too, while nothing else is asked.
 
+import { Lost } from "./api.js";
 import { openStudy } from "./working.js";
 
 /** @import { Store } from "./state/store.js" */
@@ -18,7 +20,8 @@ export const isBegunWith = (study) => sessionStorage.getItem(BEGUN) === JSON.str
 let watching = false;
 
 /** Looks at the file of the command line as long as the page is shown. @param {Store} store @param {Api} api
- * @param {string | null} stamp  of the file when the study that is open was read; null where it was another one */
+ * @param {string | null | undefined} stamp  of the file when the study that is open was read; null where it was another
+ * one; undefined where the study is not of that file */
 export function watchFile(store, api, stamp) {
   if (watching) return;
   watching = true;
@@ -29,11 +32,12 @@ export function watchFile(store, api, stamp) {
     looking = true;
     try {
       const { name, stamp: now } = await api.get("start/stamp");
-      if (now === known || name === "") return;
+      if (known === undefined || now === known || name === "") return;
       known = now;
       tell(store, api, await api.get("start"));
-    } catch {
-      // A server that is lost, or begun again without the file, is told of elsewhere.
+    } catch (error) {
+      // A server that was begun again with another token is told of where the next question is asked.
+      if (error instanceof Lost) store.dispatch({ type: "connected", connection: "lost" });
     } finally {
       looking = false;
     }

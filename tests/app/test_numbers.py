@@ -394,6 +394,8 @@ def test_a_tolerance_is_that_of_python(client: TestClient) -> None:
     found = it.tolerance_analysis(car, study.index("J1"), it.Norm(), spread=spread, samples=64, seed=0)
     assert (told["mean"], told["worst"], told["total"]) == (found.mean, found.worst, found.total_order)
     assert told["quantiles"]["0.95"] == found.quantile(0.95)
+    assert told["standard_errors"]["0.95"] == found.quantile_estimate(0.95).standard_error
+    assert told["standard_errors"]["mean"] == found.standard_errors["mean"]
     assert sum(told["histogram"]["counts"]) == found.values.size
     table = client.post("/api/export/csv", json={"panel": "tolerance", "request": body}).text
     rows = dict(list(csv.reader(io.StringIO(table)))[1:])

@@ -295,6 +295,22 @@ def test_the_interval_of_a_quantile_covers(count, share):
     assert inside >= 0.95 * 400 - 3.0 * np.sqrt(400 * 0.05 * 0.95)
 
 
+@pytest.mark.parametrize("distribution", ["uniform", "normal"])
+def test_errors_of_mean_and_standard_deviation_are_those_of_resampling(distribution: str) -> None:
+    """By bootstrap, within three times the error of 400 resamples; a Sobol' sequence scatters less than that."""
+    spread, seeds = {"c": 0.3, "b": 0.2}, range(8)
+    several = [
+        it.tolerance_analysis(fixed(), J1, NORM, spread=spread, samples=128, seed=seed, distribution=distribution)
+        for seed in seeds
+    ]
+    found, rng = several[0], np.random.default_rng(1)
+    drawn = rng.choice(found.values, (400, found.values.size))
+    resampled = {"mean": drawn.mean(axis=1).std(), "standard_deviation": drawn.std(axis=1, ddof=1).std()}
+    assert found.standard_errors == pytest.approx(resampled, rel=3.0 / np.sqrt(2.0 * 400))
+    for name, error in found.standard_errors.items():
+        assert np.std([getattr(one, name) for one in several]) < error
+
+
 @pytest.mark.campaign
 def test_a_quantile_of_values_that_scatter_is_no_more_certain_than_they_are():
     """Where hardly anything varies, a quantile is the value itself, with its errors by random roads."""

@@ -266,6 +266,10 @@ def scatter(study: Study, body: Body) -> Answer:
         "mean": found.mean,
         "standard_deviation": found.standard_deviation,
         "quantiles": {str(share): found.quantile(share) for share in _SHARES},
+        "standard_errors": {
+            **found.standard_errors,
+            **{str(share): found.quantile_estimate(share).standard_error for share in _SHARES},
+        },
         "worst": found.worst,
         "worst_values": found.worst_values,
         "main": found.first_order,

@@ -80,6 +80,21 @@ class Tolerance:
         """Unit of the index."""
         return self.nominal.unit
 
+    @property
+    def standard_errors(self) -> dict[str, float]:
+        """Standard errors of `mean` and `standard_deviation`, by the sample and by scatter of its values.
+
+        By the second and fourth moments, as of random points, which is conservative for a Sobol' sequence.
+        """
+        values, scatter = self.values, self.standard_deviation
+        kurtosis = np.mean((values - self.mean) ** 4) / scatter**4 if scatter else 1.0
+        of_mean, of_scatter = (scatter * np.sqrt(part / values.size) for part in (1.0, max(kurtosis - 1.0, 0.0) / 4.0))
+        relative = (self.nominal.standard_error or 0.0) / self.nominal.value if self.nominal.value else 0.0
+        return {
+            "mean": float(np.hypot(of_mean, relative * self.mean)),
+            "standard_deviation": float(np.hypot(of_scatter, relative * scatter)),
+        }
+
     def quantile(self, share: float) -> float:
         """Quantile of the index at this probability.
 

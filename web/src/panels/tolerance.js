@@ -9,8 +9,8 @@ import { Name, Select, Table, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
-import { shown, times, unitFor, withUnit } from "../state/scale.js";
-import { indexAxis, indexChoices, indicesOf, percent } from "./answers.js";
+import { estimated, shown, times, unitFor, withUnit } from "../state/scale.js";
+import { indexAxis, indexChoices, indicesOf } from "./answers.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
@@ -58,11 +58,12 @@ function spreadOf(names, form) {
 
 /** @param {{about: any, value: any, title: string}} props  `title`: of the index */
 function Scattered({ about, value, title }) {
+  const errors = value.standard_errors;
   const rows = [
     ["nominal", value.nominal],
-    ["mean", value.mean],
-    ["standard deviation", value.standard_deviation],
-    ["95th percentile", value.quantiles["0.95"]],
+    ["mean", value.mean, errors.mean],
+    ["standard deviation", value.standard_deviation, errors.standard_deviation],
+    ["95th percentile", value.quantiles["0.95"], errors["0.95"]],
     ["worst case", value.worst],
   ];
   const { unit, factor } = unitFor(about, [value.nominal], value.unit);
@@ -72,8 +73,9 @@ function Scattered({ about, value, title }) {
     <div class="scattered">
       <${Table} label="Distribution" data-scatter=${value.index}
         heads=${[`${withUnit(value.index, unit)}, ${value.method.replaceAll("-", " ")}`, "value"]}>
-        ${rows.map(([what, number]) => html`<tr key=${what}><th scope="row">${what}</th>
-          <td class="number" data-value=${number}>${shown(times(number, factor))}</td></tr>`)}
+        ${rows.map(([what, number, error]) => html`<tr key=${what}><th scope="row">${what}</th>
+          <td class="number" data-value=${number}>${error > 0
+            ? estimated(number * factor, error * factor).join(" ± ") : shown(times(number, factor))}</td></tr>`)}
       <//>
       ${value.histogram.counts.some((/** @type {number} */ count) => count > 0) && html`<${Plot} plot=${{
         title: `Distribution of ${value.index}`, curves: [],
@@ -92,5 +94,5 @@ function Scattered({ about, value, title }) {
     </div>`;
 }
 
-/** @param {number | null} part */
-const share = (part) => percent(part === null ? null : 100 * part);
+/** A share of the variance, whose estimate has no error bound, in whole per cent. @param {number | null} part */
+const share = (part) => (part === null ? "–" : `${Math.round(100 * part)} %`.replace("-", "−"));

@@ -333,6 +333,8 @@ def test_each_quantity_that_is_told_can_be_limited(client: TestClient, name: str
     assert set(document.get("indices", {})) < set(told)
     assert any("static stiffness of" in row["words"] for row in told.values())
     assert {row["written"] for row in told.values() if row["unit"] == "m"} <= {"mm"}
+    assert all(("99.7 %" in row["note"]) == (row["unit"] == "m") for row in told.values())
+    assert all(row["words"].startswith("r.m.s.") for row in told.values() if row["note"])
     for of, row in told.items():
         limit = {"at_most": f"1 {row['written']}" if row["unit"] else 1.0}
         limits = {**document["study"].get("subject_to", {}), of: limit}

@@ -128,6 +128,28 @@ def test_windows_that_open_at_once_all_begin_at_the_best(served: Served, visitor
         assert window.page.get_by_text("not chosen yet").count() == 0
 
 
+def test_break_even_values_of_another_layout_than_the_best_are_not_taken_for_its_own(visitor: Visitor) -> None:
+    """Which layout is the best is said beside them, with a button that selects it."""
+    page = visitor.page
+    for layout in ("S2", "S1"):  # another one, and the baseline
+        visitor.pick(layout)
+        page.click("#tab-margins")
+        page.get_by_text("S3 is the best in J1.").wait_for()
+        page.get_by_role("button", name="Select S3", exact=True).click()
+        visitor.wait_for_text("k | c - b")
+        visitor.settled()
+        assert page.get_by_role("button", name="Select S3", exact=True).count() == 0
+
+
+def test_a_constraint_on_a_travel_says_that_it_is_on_its_rms_value(visitor: Visitor) -> None:
+    """60 mm of travel are no 60 mm r.m.s."""
+    page = visitor.page
+    page.click("#step-2")
+    for of, count in {"suspension-travel": 1, "J3": 0}.items():
+        page.locator(".asked [name=of]").select_option(of)
+        assert page.locator(".asked").get_by_text("within ±60 mm for 99.7 % of the time").count() == count
+
+
 def test_keys_lead_to_every_place(visitor: Visitor) -> None:
     page = visitor.page
     visitor.settled()

@@ -221,6 +221,26 @@ def test_a_server_that_goes_while_the_page_begins_is_lost(served: Served, visito
     visitor.page.wait_for_selector("[data-connection=lost]", timeout=20_000)
 
 
+def test_a_server_that_goes_while_nothing_is_asked_is_missed(serve: Callable[..., Served], visitors: Any) -> None:
+    """Also of a study that came with a link, which is not that of the file of the command line."""
+    served = serve(EXAMPLES / "quarter-car.toml")
+    first = visitors(served).visit()
+    first.chosen()
+    first.page.get_by_text("Share", exact=True).click()
+    first.page.wait_for_function("() => document.querySelector('#shared-link')?.value.includes('#state=')")
+    link = first.page.input_value("#shared-link")
+    windows = [first, visitors(served, context=first.page.context).visit(link)]
+    for window in windows:
+        window.settled()
+    served.stop()
+    for window in windows:
+        window.page.wait_for_selector("[data-connection=lost]", timeout=20_000)
+    served.begin()
+    served.wait_until_ready()
+    for window in windows:
+        window.page.wait_for_selector("[data-connection=ready]", state="attached")
+
+
 def test_the_server_goes_and_comes_back(serve: Callable[..., Served], visitors: Any) -> None:
     served = serve(EXAMPLES / "quarter-car.toml")
     visitor = visitors(served).visit()
@@ -441,6 +461,13 @@ def test_tolerances_are_those_of_python(visitor: Visitor) -> None:
         found.quantile(0.95),
         found.worst,
     ]
+    shown = dict(
+        page.eval_on_selector_all("[data-scatter] tr:has(td)", "all => all.map(tr => tr.innerText.split('\\t'))")
+    )
+    for name, error in {"mean": "mean", "standard deviation": "standard_deviation"}.items():  # as many digits as known
+        number, scatter = shown[name].split(" ± ")
+        assert len(number.partition(".")[2]) == len(scatter.partition(".")[2])
+        assert float(scatter) == pytest.approx(found.standard_errors[error], rel=0.5)
     layouts = visitor.page.get_by_role("group", name="Layouts")
     layouts.get_by_role("button", name="S2", exact=True).click()
     page.wait_for_selector("table[data-scatter]", state="detached")  # it is that of another strut

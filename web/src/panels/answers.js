@@ -202,14 +202,6 @@ function Amount({ result: { value, standard_error: error, error_bound: bound, de
 /** @param {{value: any}} result */
 const amountText = ({ value }) => (typeof value === "string" ? value.replace("inf", "∞") : aligned(value, 4));
 
-/** @param {number | null | undefined} value @param {number | null} [error] */
-export function percent(value, error) {
-  if (value === null || value === undefined) return "–";
-  if (error) return `${estimated(value, error).join(" ± ")} %`;
-  const size = Math.abs(value);
-  return `${value < 0 && size >= 0.005 ? "−" : ""}${size < 100 ? size.toFixed(2) : size.toFixed(0)} %`;
-}
-
 /** @param {{improvement_percent?: number | null, improvement_status?: string | null, tie?: boolean | null}} result */
 export const better = ({ improvement_percent: value, improvement_status: status, tie }) =>
   (typeof value !== "number" || tie || !isOk(status) || Math.abs(value) < 0.005 ? "" : value > 0 ? "good" : "bad");

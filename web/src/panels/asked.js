@@ -90,7 +90,7 @@ export function Constraints({ store }) {
         placeholder=${written ? `in ${printed(written)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
         onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />
       <button type="button" class="edged" onClick=${add}>Add</button>
-    </div><${Wrong} state=${state} id=${ADDED} />`;
+    </div>${named(of)?.note && html`<p class="quiet">${named(of)?.note}</p>`}<${Wrong} state=${state} id=${ADDED} />`;
 }
 
 const ADDED = "limit to be added"; // the field of one
@@ -99,7 +99,7 @@ const ADDED = "limit to be added"; // the field of one
 const numberIn = (text) => (Number.isFinite(Number(text)) ? Number(text) : text);
 
 /** What a constraint can be on, by the newest study without a fault. @param {State} state
- * @returns {{of: string, words: string, unit: string, written: string}[]} */
+ * @returns {{of: string, words: string, unit: string, written: string, note: string}[]} */
 function useLimitable(state) {
   const known = useRef([]);
   const found = answerOf(state, "check").value?.limitable ?? [];

@@ -3,7 +3,7 @@
 
 import { seek, seekNow } from "../asking.js";
 import { elementsIn, kindOf } from "../library.js";
-import { baselineOf, goalOf, soughtAnswer } from "../questions.js";
+import { answerOf, baselineOf, goalOf, soughtAnswer } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { doubted, isOk } from "../parts/doubts.js";
@@ -40,9 +40,10 @@ export function MarginsPanel({ store, api }) {
   const { layout } = state.history.present;
   const { is, value, sentence } = soughtAnswer(state, NAME);
   const job = Object.values(state.work).find(({ kind, state: how }) => kind === NAME && RUNNING.includes(how));
+  const other = html`<${Best} store=${store} />`;
   if (layout === baselineOf(state.history.present).layout) return html`<p class="quiet">${layout} is the baseline:
-    select another layout.</p>`;
-  return html`<form class="row" aria-busy=${is === "coming"}
+    select another layout.</p>${other}`;
+  return html`${other}<form class="row" aria-busy=${is === "coming"}
       onSubmit=${formHandler(() => void compute(store, api))}>
       <button class="edged" disabled=${is === "coming"}>Compute break-even values</button>
       <p role="status">${is !== "coming" && (sentence || (!value && `Friction, backlash and stiffness at which ${layout}
@@ -51,6 +52,20 @@ export function MarginsPanel({ store, api }) {
       ${job.sentence}</p>`}
     ${value && html`<${Margins} value=${value} />`}
     <${Budget} store=${store} api=${api} indices=${indicesOf(state)} />`;
+}
+
+/** Which layout is the best, and a button that selects it, where another one is selected, so that nobody takes the
+ * break-even values of that one for those of the best. @param {{store: Store}} props */
+function Best({ store }) {
+  const state = store.get();
+  const { is, value } = answerOf(state, "decision");
+  /** @type {any[]} */
+  const best = is === "current" ? value.rows.filter((/** @type {any} */ { rank }) => rank === 1) : [];
+  const { layout } = best.find((row) => !row.is_baseline) ?? {};
+  if (!layout || best.some((row) => row.layout === state.history.present.layout && !row.is_baseline)) return null;
+  return html`<p class="row"><span>${layout} is the best in ${value.goal.index}.</span>
+    <button type="button" class="edged" onClick=${() => store.change({ type: "selected", layout })}>Select ${
+      layout}</button></p>`;
 }
 
 /** The result of a job. @param {{job: Job}} props */

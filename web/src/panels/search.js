@@ -12,7 +12,7 @@ import { entryAt, own, strutsOf, textOf } from "../state/document.js";
 import { estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
   from "../state/scale.js";
 import { takeNetwork } from "../working.js";
-import { indexAxis, indicesOf, percent } from "./answers.js";
+import { indexAxis, indicesOf, signed } from "./answers.js";
 import { Constraints } from "./asked.js";
 import { Files } from "./files.js";
 import { Sketch } from "./sketch.js";
@@ -188,12 +188,12 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   const { index, ranking, frontier, real_inerters: real } = one;
   const written = unitFor(state.about, ranking.map((/** @type {Row} */ { value }) => value), one.unit);
   const compared = complete && baseline !== null;
-  const better = compared ? [["better by", `than ${baseline}`]] : [];
+  const against = compared ? [`against ${baseline}`] : [];
   /** @type {string[]} */
   const methods = [...new Set(real.map((/** @type {Row} */ { method }) => method))];
   /** @param {string} label @param {string} words @param {Row[]} rows @param {boolean} [ranked] */
   const table = (label, words, rows, ranked = false) => html`<p class="quiet">${words}</p>
-    <${Table} key=${label} label=${label} heads=${["network", withUnit(index, written.unit), ...better, ""]}>
+    <${Table} key=${label} label=${label} heads=${["network", withUnit(index, written.unit), ...against, ""]}>
       ${rows.map((row, i) => html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take}
         rank=${ranked ? i + 1 : undefined} factor=${written.factor} compared=${compared} />`)}
     <//>`;
@@ -225,7 +225,7 @@ function NetworkRow({ state, row, rank, factor, compared, take }) {
       ${optimised(scaled(row, factor))}
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
-    ${compared && html`<td class="number">${percent(part)}</td>`}
+    ${compared && html`<td class="number">${signed(part)}</td>`}
     <td><button type="button" title="Take it into the editor" onClick=${() => take(row)}>Take</button></td>
   </tr>`;
 }

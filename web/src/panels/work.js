@@ -1,6 +1,6 @@
 // Long work: one queue, and a row for each kind of it with its form and what is shown of its result.
 
-import { percent } from "./answers.js";
+import { signed } from "./answers.js";
 import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody, frontIndices, frontTitle } from "./front.js";
 import { SearchForm, SearchResult, AddFreeNetwork, searchBody } from "./search.js";
@@ -144,12 +144,12 @@ function RunResult({ store, api, job }) {
     unitFor(about, rows.filter((row) => row.index === index).map(({ value }) => value), unit);
   const many = 60;
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
-  <${Table} label="Results" heads=${["layout", "index", "method", "value", "better by", ""]}>
+  <${Table} label="Results" heads=${["layout", "index", "method", "value", "against the baseline", ""]}>
     ${rows.slice(0, many).map((row, i) => html`<tr key=${i}>
       <td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td>
       <td class="number">${!isOk(row.status) && html`<div class="doubt">${String(row.status).split(": ")[0]}</div>`}
         ${writtenIn(row, unitOf(row))}</td>
-      <td class="number">${percent(row.improvement_percent)}</td>
+      <td class="number">${signed(row.improvement_percent)}</td>
       <td>${Object.keys(row.parameters ?? {}).length > 0 && html`<${Take} store=${store} design=${row}>Take<//>`}</td>
     </tr>`)}
   <//>

@@ -30,6 +30,28 @@ def number_or_none(value: object) -> float | None:
     return value if is_number(value) else None
 
 
+def use_python_numbers(of: object) -> None:
+    """Replace the numbers of NumPy and the fractions among the fields of a frozen dataclass by numbers of Python.
+
+    Arithmetic with them would keep the seven digits of a float32 and the overflow of an int32. Mappings of names to
+    numbers are replaced likewise; whatever is not a finite number stays, to be refused.
+    """
+    for name, value in vars(of).items():
+        if type(value) is float or value is None:
+            continue
+        if isinstance(value, dict):
+            if any(type(number) is not float for number in value.values()):
+                object.__setattr__(of, name, {key: _python_number(number) for key, number in value.items()})
+        elif (number := _python_number(value)) is not value:
+            object.__setattr__(of, name, number)
+
+
+def _python_number(value: object) -> object:
+    if type(value) in (float, int) or not is_number(value):
+        return value
+    return int(value) if isinstance(value, Integral) else float(value)
+
+
 def check_positive(error: type[InerterError], what: str, value: object, unit: str) -> None:
     """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:

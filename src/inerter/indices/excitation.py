@@ -19,7 +19,7 @@ from inerter.systems.filters import Filter, as_filter
 from inerter.systems.input_paths import InputPath
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import check_inputs
-from inerter.validation import check_positive
+from inerter.validation import check_positive, use_python_numbers
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.symmetry import half_of
 
@@ -128,6 +128,7 @@ class WhiteForce(FormerNames):
     is_random = True
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         if not isinstance(self.name, str):
             raise PerformanceIndexError(
                 f"A white force requires the name of a force of the mechanism, got {self.name!r}."
@@ -170,6 +171,7 @@ class GroundAcceleration(FormerNames):
     is_random = True
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         check_positive(PerformanceIndexError, "The intensity of a ground acceleration", self.intensity, "(m/s^2)^2/Hz")
 
     @property

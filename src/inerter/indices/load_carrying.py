@@ -9,7 +9,7 @@ from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import quantity
 from inerter.indices.definition import Combination, IndexDefinition
 from inerter.indices.excitation import SingleInput
-from inerter.validation import check_positive
+from inerter.validation import check_positive, use_python_numbers
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 
@@ -42,6 +42,7 @@ class LoadCarrying:
     response = "displacement per force"  # of the body, or of what a mechanism carries
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         if self.amplitude is not None:
             check_positive(PerformanceIndexError, "The amplitude of the force on the body", self.amplitude, "N")
 

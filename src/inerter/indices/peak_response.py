@@ -11,7 +11,7 @@ from inerter.indices.definition import Combination, Given, IndexDefinition
 from inerter.indices.excitation import SingleInput
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import input_unit, unit_of
-from inerter.validation import check_positive
+from inerter.validation import check_positive, use_python_numbers
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 
@@ -57,6 +57,7 @@ class PeakResponse:
     response = "gain from input to output"
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         for what, name in (("input", self.input), ("output", self.output)):
             if not isinstance(name, str):
                 raise PerformanceIndexError(f"The {what} of a peak response is given by its name, got {name!r}.")

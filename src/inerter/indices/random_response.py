@@ -13,7 +13,7 @@ from inerter.indices.excitation import Excitation, as_excitation
 from inerter.signals.road import Road
 from inerter.systems.filters import as_filter
 from inerter.systems.outputs import unit_of
-from inerter.validation import is_number
+from inerter.validation import is_number, use_python_numbers
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Weights = Mapping[str, float]
@@ -60,6 +60,7 @@ class RandomResponse:
     response = "gain from excitation"
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         if not isinstance(self.outputs, Mapping) or not self.outputs:
             raise PerformanceIndexError(
                 f"The outputs of a random response map names to weights, as {{'tyre_load': 1.0}}; got {self.outputs!r}."

@@ -11,7 +11,7 @@ from inerter.indices.definition import IndexDefinition, on_road
 from inerter.indices.excitation import Excitation
 from inerter.signals.road import Road
 from inerter.systems.filters import high_pass
-from inerter.validation import check_positive
+from inerter.validation import check_positive, use_python_numbers
 from inerter.vehicle.mechanism import Mechanism
 
 
@@ -40,6 +40,7 @@ class TyreLoad:
     response = "tyre force per road velocity"
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         if self.high_pass is not None:
             check_positive(PerformanceIndexError, "The high-pass corner of the tyre load", self.high_pass, "rad/s")
 

@@ -15,7 +15,7 @@ from inerter.indices.definition import Combination, Index, IndexDefinition, OfIn
 from inerter.methods.composite_index import IndexLike, is_composite, is_index, objective_of
 from inerter.methods.method import Method, check_request
 from inerter.methods.objective import Differentiable, Objective
-from inerter.validation import is_number
+from inerter.validation import is_number, use_python_numbers
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -46,6 +46,7 @@ class Limit:
     value: float
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         if not is_index(self.of):
             raise PerformanceIndexError(
                 f"A constraint requires an index, such as TyreLoad(road) or static_stiffness('strut'), got {self.of!r}."

@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import PerformanceIndexError
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, is_number, use_python_numbers
 
 Array = NDArray[np.float64]
 Ratio = tuple[tuple[float, ...], tuple[float, ...]]  # of polynomials in s, the highest power first
@@ -49,6 +49,7 @@ class Coherence:
     is_isotropic: bool = False
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         check_positive(PerformanceIndexError, "The length of a coherence", self.length, "m")
         for name in ("numerator", "denominator"):
             given = getattr(self, name)
@@ -83,7 +84,7 @@ class Coherence:
         Raises `PerformanceIndexError` unless `wavenumber` [cycle/m] is positive and `level` a number from -1 to 1.
         """
         check_positive(PerformanceIndexError, "The wavenumber of a coherence", wavenumber, "cycle/m")
-        return cls((_level(level),), (1.0, 1.0), 1.0 / (2.0 * math.pi * wavenumber))
+        return cls((_level(level),), (1.0, 1.0), 1.0 / (2.0 * math.pi * float(wavenumber)))
 
     @classmethod
     def isotropic(cls, track: float) -> Coherence:

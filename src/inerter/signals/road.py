@@ -9,7 +9,7 @@ from typing import Self
 from inerter.errors import PerformanceIndexError
 from inerter.field_metadata import quantity
 from inerter.signals.coherence import Coherence
-from inerter.validation import check_positive
+from inerter.validation import check_positive, use_python_numbers
 
 _PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cycle/m
 
@@ -101,6 +101,7 @@ class Road:
     shape: RoadShape | None = field(default=None, compare=False, repr=False)  # of a measured road
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         for name, unit in (("roughness", "m^3/cycle"), ("speed", "m/s")):
             check_positive(PerformanceIndexError, f"The {name} of a road", getattr(self, name), unit)
         if self.coherence is not None and not isinstance(self.coherence, Coherence):

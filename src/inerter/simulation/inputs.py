@@ -233,7 +233,7 @@ def _delay(distance: float, signal: Signal | None, speed: float | None, name: st
             f"simulate(..., speed=...) states the speed of the vehicle."
         )
     check_positive(SimulationError, "The speed", known, "m/s")
-    return distance / known
+    return distance / float(known)
 
 
 def tabulate(

@@ -29,7 +29,7 @@ from inerter.simulation.observe import trajectory_of
 from inerter.simulation.periodic_steady_state import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.validation import is_number
+from inerter.validation import is_number, use_python_numbers
 from inerter.vehicle.mechanism import GROUND_ACCELERATION
 from inerter.vehicle.vehicle import Vehicle
 
@@ -46,6 +46,9 @@ class RunSettings:
     every: int = 1
     energy: bool = False
     memory_limit: float = MEMORY_LIMIT  # [bytes]
+
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
 
 
 @dataclass(frozen=True, eq=False)

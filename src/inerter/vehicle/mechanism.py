@@ -16,7 +16,7 @@ from inerter.formatting import format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.notebook import shown_by
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, is_number, use_python_numbers
 
 SMALLEST, LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 Port = Mapping[str, float]
@@ -41,6 +41,9 @@ class Coordinate:
     name: str
     inertia: float | Free
     angle: bool = False
+
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
 
     @property
     def element(self) -> Element:
@@ -78,6 +81,9 @@ class Strut:
     upper: Port
     lower: Port
 
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
+
 
 @dataclass(frozen=True)
 class Tyre:
@@ -93,6 +99,9 @@ class Tyre:
     network: Network
     port: Port
     road: str
+
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
 
 
 @dataclass(frozen=True)
@@ -113,6 +122,9 @@ class RoadInput:
     side: str = ""
     track = RenamedAttribute("side")
 
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
+
 
 RoadInput.__init__ = renamed_keywords(track="side")(RoadInput.__init__)  # type: ignore[method-assign]
 
@@ -129,6 +141,9 @@ class Force:
     name: str
     port: Port
 
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
+
 
 @dataclass(frozen=True)
 class TrackedPoint:
@@ -144,6 +159,9 @@ class TrackedPoint:
     port: Port
     angle: bool = False
 
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
+
 
 @dataclass(frozen=True)
 class OutputWeight:
@@ -156,6 +174,9 @@ class OutputWeight:
 
     output: str
     weight: float = 1.0
+
+    def __post_init__(self) -> None:
+        use_python_numbers(self)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from inerter.field_metadata import fields_of, mounts_of, needed_mounts_of
 from inerter.networks.elements import Free, Network, check_network
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.notebook import shown_by
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, is_number, use_python_numbers
 from inerter.vehicle.mechanism import Mechanism, check_known, check_quantity
 
 _Asked = TypeVar("_Asked")
@@ -163,6 +163,7 @@ def name_free_quantities(of: Any, what: str) -> None:
 
     Raises `MechanismError` unless they are positive (or zero, if that is their default) or, where allowed, free.
     """
+    use_python_numbers(of)
     for field in fields_of(type(of)):
         value, said = getattr(of, field.name), f"The {field.in_words} of {what}"
         if not isinstance(value, Free):

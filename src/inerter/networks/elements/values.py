@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import NetworkError
 from inerter.formatting import format_alike, format_number
-from inerter.validation import is_number
+from inerter.validation import is_number, use_python_numbers
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 
@@ -33,6 +33,7 @@ class Free:
     name: str | None = None
 
     def __post_init__(self) -> None:
+        use_python_numbers(self)
         for bound in (self.lower, self.upper):
             if not is_number(bound):
                 raise NetworkError(f"A bound of a free value must be a finite number, got {bound!r}.")

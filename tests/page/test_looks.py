@@ -148,6 +148,36 @@ def test_values_are_whole_and_inside_their_frames(size: str, visitor: Visitor) -
     assert page.evaluate(OUTSIDE) == []
 
 
+def test_the_page_does_not_scroll_however_much_there_is_to_tell(visitor: Visitor, tmp_path: Path) -> None:
+    """Messages above, reasons below a long ranking, of which the selected layout, the last one, is seen."""
+    page = visitor.page
+    study = tmp_path / "many.toml"
+    elements = 'k = "120 kN/m"\nc = "4 kN s/m"\nb = "300 kg"\nf = "300 N"\nks = "1 MN/m"'
+    layouts = [f'S{i} = "k | c - b"' for i in range(1, 8)] + ['S8 = "k | c | ks - (b | f)"']
+    study.write_text(study_text(INDICES, vehicle=PAPER_CAR, elements=elements, layouts="\n".join(layouts)))
+    visitor.open(study)
+    page.wait_for_selector("text=many.toml is open")
+    for i in range(2):
+        broken = tmp_path / f"broken{i}.toml"
+        broken.write_text("[[[")
+        visitor.open(broken)
+        page.get_by_text(f"broken{i}.toml").first.wait_for()
+    page.select_option(".answers select >> nth=0", "expected-value")
+    visitor.pick("S8")
+    page.wait_for_selector("[aria-label=Reasons] li")
+    page.locator(".answers > .scroll").first.evaluate("each => { each.scrollTop = 0; }")
+    visitor.pick("S1")
+    visitor.pick("S8")
+    assert page.evaluate("() => document.documentElement.scrollHeight - innerHeight") == 0
+    boxes = [
+        page.locator(each).first.bounding_box() for each in ("tr.on", ".answers > .scroll", "#network-text", "footer")
+    ]
+    tops, ends = [box["y"] for box in boxes], [box["y"] + box["height"] for box in boxes]
+    assert tops[1] <= tops[0]
+    assert ends[0] <= ends[1] + 1
+    assert ends[2] <= tops[3]
+
+
 def test_the_tab_that_is_shown_is_seen_in_its_row(visitor: Visitor) -> None:
     """On a narrow screen the row of tabs is longer than the screen."""
     page = visitor.page

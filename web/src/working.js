@@ -1,7 +1,7 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
 import { Lost, Refusal, postNow } from "./api.js";
-import { freeIn, isQuick, layoutsWith, methodOf, quickMethod } from "./library.js";
+import { freeIn, isQuick, kindOf, layoutsWith, methodOf, quickMethod } from "./library.js";
 import { freshName } from "./network/algebra.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { questions, strutTexts } from "./questions.js";
@@ -201,8 +201,11 @@ export function takeNetwork(store, found, row) {
   return `${doubts}The layout ${layout} has the network ${row.network}.`;
 }
 
-/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own; what would
- * have the name of another element gets a new one. Returns what to tell. @param {Store} store @param {Api} api
+const OF_VELOCITY = "N s/m"; // unit of an element whose force is that of a velocity
+
+/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own, and in another
+ * one in series with the first damper of that strut; what would have the name of another element gets a new one.
+ * Returns what to tell. @param {Store} store @param {Api} api
  * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device
  * @param {string} [strut] another strut than the one that is edited */
 export async function takeDevice(store, api, { elements = {}, layouts = {} }, strut = "") {
@@ -228,8 +231,18 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }, st
   const before = textOf(store.get().history.present);
   const text = before ? `${before} | ${network.text}` : network.text;
   store.change({ type: "drawn", text, added: device.elements }, gesture);
+  const damper = before.match(/[A-Za-z_]\w*/g)?.find((each) => kindOf(store.get(), each)?.unit === OF_VELOCITY);
+  let also = "";
+  if (damper) { // where an inerter helps is not known before: both are ranked
+    const second = nextLayout(store.get().history.present);
+    store.change({ type: "layoutAdded", name: second }, gesture);
+    const inSeries = before.replace(new RegExp(`\\b${damper}\\b`), `${damper} - (${network.text})`);
+    store.change({ type: "drawn", text: inSeries, added: {} }, gesture);
+    store.change({ type: "selected", layout: name }, gesture);
+    also = `, and in ${second}, in series with ${damper}`;
+  }
   return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut || "strut"])} of ${
-    document.layout}. To join another strut: undo, select its layout, take the device again.`;
+    document.layout}${also}. To join another strut: undo, select its layout, take the device again.`;
 }
 
 /** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.

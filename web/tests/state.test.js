@@ -212,9 +212,11 @@ test("numbers in a column have as many digits, zeros at the end too", () => {
 });
 
 test("a symbol has a subscript, a word has none", () => {
-  const names = ["k", "ks", "c_f", "b12", "cs2", "k_front", "flywheel", "friction", "inerter_f", "f"];
+  const names = ["k", "ks", "c_f", "b12", "cs2", "k_front", "flywheel", "friction", "inerter_f", "f", "gap",
+    "gap2", "ksh"];
   assert.deepEqual(names.map((name) => symbolParts(name).join(" ")),
-    ["k ", "k s", "c f", "b 12", "c s2", "k front", "flywheel ", "friction ", "inerter_f ", "f "]);
+    ["k ", "k s", "c f", "b 12", "c s2", "k front", "flywheel ", "friction ", "inerter_f ", "f ",
+      "gap ", "gap2 ", "k sh"]);
 });
 
 test("what the library said of a study stands until it says more, without what the document has no longer", () => {

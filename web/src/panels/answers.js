@@ -82,6 +82,14 @@ function Ranking({ store, answer: { is, value, before } }) {
     const picks = [.../** @type {HTMLElement} */ (table.current).querySelectorAll(".pick")];
     /** @type {HTMLElement[]} */ (picks).find(({ title }) => title === focused)?.focus();
   }, [order]);
+  useLayoutEffect(() => {
+    const box = /** @type {HTMLElement} */ (table.current);
+    const show = () => showSelected(box);
+    show();
+    const sized = new ResizeObserver(show); // as when a message above it takes room
+    sized.observe(box);
+    return () => sized.disconnect();
+  }, [order, document.layout]);
   const { parts, trees, about } = state;
   const sketches = useMemo(() => sketchesOf(state), [document.study.layouts, parts, trees, about]);
   return html`<div class="scroll" role="group" aria-label="Layouts" ref=${table} onKeyDown=${turn}>
@@ -96,6 +104,15 @@ function Ranking({ store, answer: { is, value, before } }) {
       sketched=${sketches[row.layout] ?? []}
       stale=${!isRight(row.layout)} compared=${isRight(baseline)}
       missing=${is === "coming" ? "…" : "–"} />`)}</tbody></table></div>`;
+}
+
+/** Scrolls the ranking, and nothing else, so that the selected layout is seen. @param {HTMLElement} box */
+function showSelected(box) {
+  const row = /** @type {HTMLElement | null} */ (box.querySelector("tr.on"));
+  if (!row) return;
+  const below = row.offsetTop + row.offsetHeight - box.clientHeight;
+  const head = box.querySelector("thead")?.offsetHeight ?? 0;
+  box.scrollTop = Math.min(Math.max(box.scrollTop, below), row.offsetTop - head);
 }
 
 /** A layout; `stale` where its numbers are of before, `compared` unless those of the baseline are.

@@ -375,8 +375,8 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
     <rect class="touch" x="-11" y="-20" height="40" rx="3"
       width=${24 + Math.max(valued ? VALUE : 0, 5.2 * shortLabel(one.name).length)} />
     <path class="symbol" d=${symbolPath(kind)} />
-    <text x="12" y="2">${free ? shortLabel(one.name) : subscripted(shortLabel(one.name))}</text>
-    ${valued && html`<text class="value" x="12" y="12">${printed(value)}</text>`}
+    <text x="12" y="1">${free ? shortLabel(one.name) : subscripted(shortLabel(one.name))}</text>
+    ${valued && html`<text class="value" x="12" y="13">${printed(value)}</text>`}
   </g>`;
 }
 

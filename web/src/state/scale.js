@@ -122,12 +122,16 @@ const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 export const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
 
 /** A unit as a person writes it. @param {string} unit */
-export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power));
+export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power))
+  .replace(/\bum\b/g, "µm");
 
-/** A symbol and its subscript: of a letter with few others behind it, or with an underscore; of a word there is none.
+const SYMBOL = /^([A-Za-z])(?:_(.+)|(\d\w*|[A-Za-z]\d*|[^\W\d_aeiouAEIOU][A-Za-z]\d*))$/;
+
+/** A symbol and its subscript: of a letter with few others behind it, or with an underscore; of a word there is none,
+ * which has a vowel after its first letter if it is so short.
  * @param {string} name @returns {[string, string]} */
 export function symbolParts(name) {
-  const [, letter, after, close] = /^([A-Za-z])(?:_(.+)|(\d\w*|[A-Za-z]{1,2}\d*))$/.exec(name) ?? [];
+  const [, letter, after, close] = SYMBOL.exec(name) ?? [];
   return letter ? [letter, after ?? close] : [name, ""];
 }
 

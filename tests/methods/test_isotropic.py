@@ -23,7 +23,7 @@ PLACES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 @dataclass(frozen=True)
 class Car:
-    """The numbers of a full car whose struts are k | c | (c2 - b), the same on both sides."""
+    """The numbers of a full car whose struts are k | c | (c2 - b), the same on both sides; or k | c | (k2 - b)."""
 
     body: np.ndarray  # mass, moments of inertia of pitch and roll
     wheels: np.ndarray  # masses (4,)
@@ -32,10 +32,12 @@ class Car:
     tracks: np.ndarray
     struts: np.ndarray  # k, c, c2, b (2, 4)
     bar: float  # N/m, of the front
+    beside: type[it.Damper] | type[it.Spring] = it.Damper  # the inerter
 
     def mechanism(self) -> it.Mechanism:
         """As the package has it, with wheels of their own masses."""
-        struts = [it.Spring(k) | it.Damper(c) | it.Damper(c2) - it.Inerter(b) for k, c, c2, b in self.struts.tolist()]
+        rows = self.struts.tolist()
+        struts = [it.Spring(k) | it.Damper(c) | self.beside(own) - it.Inerter(b) for k, c, own, b in rows]
         numbers = [*self.body, *self.wheels[::2], *self.tyres, *self.places, *self.tracks]
         car = it.FullCar(*map(float, numbers), front=struts[0], rear=struts[1], anti_roll_front=it.Spring(self.bar))
         masses = dict(zip((f"unsprung_{wheel}" for wheel in WHEELS), self.wheels.tolist(), strict=True))
@@ -48,9 +50,10 @@ class Car:
         s = 1j * omega
         front, side = np.array([1, 1, -1, -1]), np.where(LEFT, 0.5, -0.5)
         arms = np.column_stack([np.ones(4), front * self.places.repeat(2), side * self.tracks.repeat(2)])
-        k, c, c2, b = (self.struts[:, i].repeat(2) for i in range(4))
+        k, c, own, b = (self.struts[:, i].repeat(2) for i in range(4))
         s4 = s[:, None]
-        dynamic = k + s4 * (c + b * c2 * s4 / (c2 + b * s4))
+        beside = own * (s4 if self.beside is it.Damper else 1.0)  # its dynamic stiffness
+        dynamic = k + s4 * c + beside * b * s4**2 / (beside + b * s4**2)
         kt = self.tyres.repeat(2)
         travel = np.hstack([arms, -np.eye(4)])
         Z = np.einsum("wi,ij,ik->wjk", dynamic, travel, travel).astype(complex)
@@ -144,6 +147,17 @@ def check(seed):
     assert found.error_bound < 1e-6
     expected = road.velocity_intensity * by_quadrature(car, speed, track, output)
     return found.value / expected - 1.0, (seed, output, speed, track)
+
+
+@pytest.mark.parametrize("output", ["sprung_acceleration", "roll_acceleration", "front_left_travel"])
+def test_resonances_of_one_side_against_the_other_in_which_nothing_moves_leave_no_doubt(output):
+    car = replace(random_car(np.random.default_rng(3), lopsided=False), beside=it.Spring)
+    car.struts[:] = [25e3, 1500.0, 150e3, 7.0], [25e3, 1500.0, 120e3, 9.0]
+    road = it.Road(5e-7, 25.0, it.Coherence.isotropic(1.5))
+    found = it.evaluate(car.mechanism(), it.RandomResponse({output: 1.0}, road), it.Norm())
+    assert found.status.ok, found.status
+    assert found.error_bound < 1e-8
+    assert found.value == pytest.approx(road.velocity_intensity * by_quadrature(car, 25.0, 1.5, output), rel=1e-8)
 
 
 @pytest.mark.parametrize("seed", sampled(range(8), [1, 2], kept=3))

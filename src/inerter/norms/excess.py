@@ -8,8 +8,10 @@ that is known beforehand. It need not be as accurate as a mean square, of which 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from inerter.norms.response import modal_response
@@ -54,8 +56,7 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
 
     `excesses` has the functions of the sources that have one; the system has the filters that stand in for them.
     """
-    A = balance(system.A)[0]
-    poles = np.asarray(np.linalg.eigvals(A) if len(A) else np.zeros(0), dtype=complex)
+    poles, largest, rounding = _modes(system)
     names = [s for s in dict.fromkeys(system.sources) if s in excesses]
     if not names:
         return np.zeros(len(system.outputs)), np.zeros(len(system.outputs))
@@ -68,7 +69,8 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
         return gains.sum(axis=2), np.einsum("wos,ws->wo", gains, more)
 
     fastest = float(np.abs(poles).max(initial=0.0))
-    moving = poles[np.abs(poles) > _AT_ZERO * fastest]
+    are_moving = np.abs(poles) > _AT_ZERO * fastest
+    moving = poles[are_moving]
     times = [getattr(excesses[name], "time", 0.0) for name in names]
     late = float(np.ptp(system.delays)) if len(system.delays) else 0.0
     high = max(min(_SHORTEST / max(*times, 1e-300), _FASTEST * fastest), 1e-300)
@@ -95,10 +97,30 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
     added = added + (_KRONROD @ more).sum(axis=0)
     unsure = unsure + np.abs((_KRONROD - _LESS) @ more).sum(axis=0)
     with np.errstate(divide="ignore"):
-        blurred = np.minimum(len(A) * _EPS * np.abs(A).sum(axis=1).max(initial=0.0) / np.abs(moving.real), 1.0)
-    there = np.array([np.abs(excesses[name](np.maximum(np.abs(moving), low))) for name in names])
-    unsure = unsure + float((there * blurred).max(initial=0.0)) * total
+        blurred = np.minimum(rounding / np.abs(moving.real), 1.0)
+    for name in names:
+        inputs = [i for i, source in enumerate(system.sources) if source == name]
+        residues = largest[:, are_moving][:, :, inputs].sum(axis=2)
+        resonances = np.minimum(residues**2 * np.pi / np.maximum(np.abs(moving.real), rounding), total[:, None])
+        unsure = unsure + resonances @ (np.abs(excesses[name](np.maximum(np.abs(moving), low))) * blurred)
     return added / np.pi, unsure / np.pi
+
+
+def _modes(system: LinearSystem) -> tuple[NDArray[np.complex128], Array, float]:
+    """Poles, sizes of their residues (outputs, poles, inputs), infinite where they are unknown, and rounding of a pole.
+
+    A mode that no input moves or no output sees has residues of rounding alone, however light its damping.
+    """
+    A, scale = balance(system.A)
+    if not len(A):
+        return np.zeros(0, dtype=complex), np.zeros((len(system.outputs), 0, len(system.sources))), 0.0
+    eigen: tuple[Any, Any, Any] = scipy.linalg.eig(A, left=True)  # type: ignore[assignment]
+    poles, left, right = eigen
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        driven = (left.conj().T @ (system.B / scale[:, None])) / np.sum(left.conj() * right, axis=0)[:, None]
+        residues = np.abs((system.C * scale) @ right)[:, :, None] * np.abs(driven)
+    rounding = len(A) * _EPS * float(np.abs(A).sum(axis=1).max())
+    return poles, np.nan_to_num(residues, nan=np.inf, posinf=np.inf), rounding
 
 
 def _equal_panels(low: float, high: float, count: int) -> Array:

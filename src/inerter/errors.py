@@ -216,8 +216,9 @@ OK = Status()
 class ErrorSource:
     """Named source of numerical error with its relative `bound`.
 
-    `shared` is that bound with the sign of its effect, if the error is one of the road, which changes all values at
-    once: `improvement_bound` counts the difference of both effects. It is 0 for an error of this value alone.
+    `shared` has the effects of an error of the road, which changes all values at once, with their signs: one, or one
+    for each band of frequencies, whose root of the sum of squares is the bound. `improvement_bound` counts the
+    difference of the effects on both values. It is empty for an error of this value alone.
 
     >>> import inerter as it
     >>> it.Estimate(2.0, "m/s^2", error_sources=(it.ErrorSource("rounding", 1e-12),)).error_bound  # relative
@@ -226,7 +227,7 @@ class ErrorSource:
 
     name: str
     bound: float
-    shared: float = 0.0
+    shared: tuple[float, ...] = ()
 
 
 def worst_of(statuses: Iterable[Status]) -> Status:

@@ -142,6 +142,15 @@ def test_noise_whose_shorter_waves_have_no_end_has_a_line_too():
     assert it.road_spectrum(profile, sampling="filtered").waviness == pytest.approx(0.0, abs=0.1)
 
 
+@pytest.mark.parametrize("points", [3000, 3001, 3006, 3011, 3197])
+def test_every_profile_has_eight_segments(points: int):
+    """Their number is in the effective length: that of one segment, times their number, with their correlation."""
+    spectrum = it.road_spectrum(it.Profile(0.1 * np.arange(points), np.random.default_rng(1).normal(size=points)))
+    segment = 1.0 / (spectrum.wavenumber[1] - spectrum.wavenumber[0])
+    independent = 8.0 / (1.0 + 2.0 / 36.0 * 7.0 / 8.0) / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0))
+    assert spectrum.effective_length == pytest.approx(segment * independent, rel=1e-5)
+
+
 @pytest.mark.parametrize("segments", [2, 3, 6])
 @pytest.mark.parametrize("lines", [1, 4])
 def test_degrees_of_freedom_are_those_of_the_scatter_of_welchs_method(segments, lines):

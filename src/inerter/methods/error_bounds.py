@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import zip_longest
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from inerter.methods.method import Estimate
 
 ROUNDING = "rounding"
+Effects = Mapping[str, Sequence[float]]  # effects of errors of a road on a value, by source
 STAND_INS = 0.1  # relative error of a value that is ok by what stands in for its excitation, such as a line for a road
 
 
@@ -52,8 +54,8 @@ def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tupl
         share = weight * abs(part.value / total)
         for source in part.error_sources:
             known = found.get(source.name, ErrorSource(source.name, 0.0))
-            bound, shared = known.bound + share * source.bound, known.shared + share * source.shared
-            found[source.name] = replace(known, bound=bound, shared=shared)
+            shared = tuple(a + share * b for a, b in zip_longest(known.shared, source.shared, fillvalue=0.0))
+            found[source.name] = ErrorSource(source.name, known.bound + share * source.bound, shared)
     return tuple(found.values())
 
 
@@ -75,8 +77,8 @@ def improvement_bound(
     base: float,
     bound: float,
     base_bound: float,
-    shared: Mapping[str, float] = MappingProxyType({}),
-    base_shared: Mapping[str, float] = MappingProxyType({}),
+    shared: Effects = MappingProxyType({}),
+    base_shared: Effects = MappingProxyType({}),
 ) -> float:
     """Largest error of an improvement [%], of values with these relative errors; nan where none is known.
 
@@ -84,6 +86,14 @@ def improvement_bound(
     """
     if not math.isfinite(value) or not base or not base_bound < 1.0:
         return math.nan
-    alone = sum(whole - sum(map(abs, of.values())) for whole, of in ((bound, shared), (base_bound, base_shared)))
-    apart = sum(abs(shared.get(name, 0.0) - base_shared.get(name, 0.0)) for name in {**shared, **base_shared})
-    return 100.0 * abs(value / base) * (alone + apart) / (1.0 - base_bound)
+    alone = sum(whole - size_of_effects(of) for whole, of in ((bound, shared), (base_bound, base_shared)))
+    apart = {
+        name: [a - b for a, b in zip_longest(shared.get(name, ()), base_shared.get(name, ()), fillvalue=0.0)]
+        for name in {**shared, **base_shared}
+    }
+    return 100.0 * abs(value / base) * (alone + size_of_effects(apart)) / (1.0 - base_bound)
+
+
+def size_of_effects(effects: Effects) -> float:
+    """Bound of errors of a road with these effects by source: those of one source are independent."""
+    return sum(math.hypot(*several) for several in effects.values())

@@ -80,9 +80,9 @@ class Estimate:
         return float(sum(source.bound for source in self.error_sources)) if self.error_sources else nan
 
     @property
-    def shared_errors(self) -> dict[str, float]:
+    def shared_errors(self) -> dict[str, tuple[float, ...]]:
         """Relative effects, with their signs, of the errors of the road that all values on it share, by source."""
-        return {source.name: source.shared for source in self.error_sources if source.shared}
+        return {source.name: source.shared for source in self.error_sources if any(source.shared)}
 
     def __str__(self) -> str:
         error = nan if self.standard_error is None else self.standard_error

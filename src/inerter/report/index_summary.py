@@ -92,12 +92,13 @@ def largest_error(row: xr.Dataset, layout: int, base: int) -> float:
     return improvement_bound(value, other, bound, other_bound, *(road_effects(one, EFFECT) for one in pair))
 
 
-def road_effects(value: xr.Dataset, name: str) -> dict[str, float]:
+def road_effects(value: xr.Dataset, name: str) -> dict[str, list[float]]:
     """Effects of the errors of a measured road on a value, by error; `name` is their variable."""
-    if name not in value:
-        return {}
-    effects = value[name]
-    return dict(zip(effects[ROAD_ERROR].values.tolist(), effects.values.tolist(), strict=True))
+    found: dict[str, list[float]] = {}
+    if name in value:
+        for error, effect in zip(value[ROAD_ERROR].values.tolist(), value[name].values.tolist(), strict=True):
+            found.setdefault(error, []).append(effect)
+    return found
 
 
 def margins_of(row: xr.Dataset, best: int) -> list[float]:

@@ -23,6 +23,7 @@ _OCTAVE = 12  # parts of an octave in which densities are averaged before the fi
 _FEWEST = 3  # bands of a fit
 _FIRST = 3  # first line of the fit: detrending affects those below
 _SEGMENTS = 8  # of the profile, which overlap by half
+_MANY = 1e6  # lines of a wide band
 POINTS, AVERAGES, FILTERED = SAMPLING = ("points", "averages", "filtered")  # kinds of heights of a profile
 _STEEP = (1.05, 8.0)  # wavinesses for which aliasing is corrected: its sum diverges at 1
 
@@ -34,7 +35,8 @@ class RoadSpectrum:
     The line is fitted by least squares to the logarithms of densities averaged in twelfths of an octave from `lowest`
     to `highest`; `scatter` is their standard deviation from the line, as a factor. Line and `averages` are those of the
     road. `density`, that of the samples, includes aliased waves shorter than two intervals; `folded` is the factor by
-    which they would increase `standard`.
+    which they would increase `standard`. A mean of the density over a band of the width B has the relative variance
+    1 / (B `effective_length`).
     """
 
     wavenumber: Matrix  # (n,) [cycle/m]
@@ -48,6 +50,7 @@ class RoadSpectrum:
     bands: int = 0  # of the line
     averages: tuple[tuple[float, float], ...] = ()  # of the bands: wavenumber and density
     folded: float = 1.0
+    effective_length: float = math.inf  # [m]
 
     @property
     def iso8608_class(self) -> RoadClass:
@@ -65,7 +68,7 @@ class RoadSpectrum:
             return None
         wavenumbers, densities = zip(*self.averages, strict=True)
         line = unevenness * (np.array(wavenumbers) / N0) ** -waviness
-        return RoadShape(tuple(wavenumbers), tuple((np.array(densities) / line).tolist()))
+        return RoadShape(tuple(wavenumbers), tuple((np.array(densities) / line).tolist()), self.effective_length)
 
 
 @renamed_keywords(track="side")
@@ -102,7 +105,7 @@ def road_spectrum(
     if side and side not in even.tracks:
         raise RecordError(f"{profile.source!r}: unknown track {side!r}.")
     heights = [even.tracks[side]] if side else list(even.tracks.values())
-    size = max(2 * even.distance.size // (_SEGMENTS + 1), min(even.distance.size, 16))
+    size = max(2 * (even.distance.size // (_SEGMENTS + 1)), min(even.distance.size, 16))
     wavenumber, densities = scipy.signal.welch(
         np.array(heights), fs=1.0 / even.interval, nperseg=size, window="hann", detrend="linear"
     )  # type: ignore[call-overload]
@@ -134,6 +137,10 @@ def road_spectrum(
         bands=int(n.size),
         averages=tuple(zip(n.tolist(), (smooth * np.exp(-folding)).tolist(), strict=True)),
         folded=math.exp(float(np.mean(folding))),
+        effective_length=size
+        * even.interval
+        * float(_freedom(even.distance.size, size, np.array(_MANY)))
+        / (2.0 * _MANY),
     )
 
 

@@ -65,10 +65,14 @@ def road_class(letter: object) -> RoadClass:
 
 @dataclass(frozen=True)
 class RoadShape:
-    """Ratio of a measured density to its fitted line at increasing wavenumbers."""
+    """Ratio of a measured density to its fitted line at increasing wavenumbers.
+
+    The mean of the density over a band of the width B has the relative variance 1 / (B `length`).
+    """
 
     wavenumber: tuple[float, ...]  # [cycle/m], from the longest measured wave to the shortest
     ratio: tuple[float, ...]
+    length: float = math.inf  # [m] of an undivided profile whose density scatters as much
 
 
 @dataclass(frozen=True)

@@ -95,7 +95,7 @@ class ToleranceAnswer(Answer):
     effects: dict[str, list[float]]  # by what scatters: its part of the variance by itself, and in all
     standard_error: float | None = None  # of the nominal value, by random inputs that all values have in common
     error_bound: float | None = None  # of the nominal value, relative, sampling apart
-    shared_errors: dict[str, float] = field(default_factory=dict)  # of that, those of the road
+    shared_errors: dict[str, tuple[float, ...]] = field(default_factory=dict)  # of that, those of the road
 
     def quantity(self, name: str) -> Quantity | None:
         """A number of the distribution with its unit and the errors of the values; None if it is not known."""

@@ -289,7 +289,7 @@ def remark(line: MeasuredLine | None) -> str:
         return ""
     text = (
         f"{capital(line.note)}. Results of this file have that roughness, and leave the errors of the "
-        f"line out. SHA-256 of the file: {line.digest}"
+        f"profile out. SHA-256 of the file: {line.digest}"
     )
     return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"
 

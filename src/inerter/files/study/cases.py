@@ -127,7 +127,7 @@ class Outcome(PartResult):
     limits: list[list[Any]] = field(default_factory=list)  # of each: value, whether it holds back, its cost, its part
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
-    shared_errors: dict[str, dict[str, dict[str, float]]] = field(default_factory=dict)  # of them, those of the road
+    shared_errors: dict[str, dict[str, dict[str, tuple[float, ...]]]] = field(default_factory=dict)  # those of the road
     speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
     speed_message: str = ""  # what makes those doubtful
     in_conditions: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> own index in each

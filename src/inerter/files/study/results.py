@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 from typing import Any
@@ -53,6 +54,7 @@ class DatasetBuilder:
         self._controls: dict[tuple[int, ...], Array] = {}  # of those samples and of many more, where nothing is swept
         self._by: dict[str, None] = {}  # methods of the values at other speeds
         self._uncertain = is_uncertain(study)
+        self._no_effects = {name: [0.0] * count for name, count in Counter(_road_errors(study)).items()}
         self._parameters = study.free_units
         self._data = _empty_dataset(study, self._parameters)
         self._columns = {name: i for i, name in enumerate(self._parameters)}
@@ -128,8 +130,10 @@ class DatasetBuilder:
             arrays["other_error_bound"][number, m] = [bounds.get(other, np.nan) for other in self.study.indices]
             if EFFECT in arrays:
                 effects = outcome.shared_errors.get(method, {})
-                arrays[EFFECT][number, m] = _of_road(effects.get(index, {}))
-                arrays[OTHER_EFFECT][number, m] = [_of_road(effects.get(other, {})) for other in self.study.indices]
+                arrays[EFFECT][number, m] = self._of_road(effects.get(index, {}))
+                arrays[OTHER_EFFECT][number, m] = [
+                    self._of_road(effects.get(other, {})) for other in self.study.indices
+                ]
             error = outcome.standard_errors.get(method, {}).get(index)
             arrays["standard_error"][number, m] = np.nan if error is None else error
             best = best or isfinite(values.get(index, np.nan))
@@ -159,9 +163,13 @@ class DatasetBuilder:
                 for name in ("value", "error_bound", "standard_error"):
                     arrays[f"{IN_CONDITIONS}{name}"][number, m, c] = np.nan if found[name] is None else found[name]
                 if EFFECT in arrays:
-                    arrays[f"{IN_CONDITIONS}{EFFECT}"][number, m, :, c] = _of_road(found["shared_errors"])
+                    arrays[f"{IN_CONDITIONS}{EFFECT}"][number, m, :, c] = self._of_road(found["shared_errors"])
                 if self._uncertain and baseline is not None and found["standard_error"] is not None:
                     self._samples[IN_CONDITIONS, (number, m, c)] = np.array(found["samples"])
+
+    def _of_road(self, effects: Mapping[str, Sequence[float]]) -> list[float]:
+        """Effects of the errors of the road, zero where there is none."""
+        return [effect for name, none in self._no_effects.items() for effect in effects.get(name, none)]
 
     def _enter_comparisons(self) -> None:
         """Improvements of values that scatter: by the differences on the same roads, with their standard errors."""
@@ -207,9 +215,16 @@ def _enter_improvements(data: xr.Dataset, baseline: str, of: str = "") -> None:
     if EFFECT in data:  # of what both share, the difference counts
         effects = data[f"{of}{EFFECT}"]
         other = effects.sel(layout=baseline, drop=True)
-        errors = errors + (abs(effects - other) - abs(effects) - abs(other)).sum(ROAD_ERROR)
+        errors = errors + _size(effects - other) - _size(effects) - _size(other)
     widest = 100.0 * abs(values / base) * errors / (1.0 - of_base)
     data[f"{of}improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*values.dims).values
+
+
+def _size(effects: xr.DataArray) -> xr.DataArray:
+    """Bounds of errors of the road, from their effects in the last dimension, as `size_of_effects` has them."""
+    of = effects[ROAD_ERROR].values
+    sizes = [(effects.isel({ROAD_ERROR: of == name}) ** 2).sum(ROAD_ERROR) ** 0.5 for name in ROAD_ERRORS]
+    return sum(sizes[1:], sizes[0])
 
 
 class Pending:
@@ -256,7 +271,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "parameter": len(parameters),
         "limit": len(study.limits),
         "at_speeds.speed": len(BESIDE),
-        ROAD_ERROR: len(ROAD_ERRORS),
+        ROAD_ERROR: len(_road_errors(study)),
         CONDITION: len(study.conditions),
     }
     variables = {}
@@ -306,7 +321,7 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
     if study.road is not None and is_at_one_speed(study):
         labels["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     if is_measured(study):
-        labels[ROAD_ERROR] = list(ROAD_ERRORS)
+        labels[ROAD_ERROR] = list(_road_errors(study))
     if study.conditions:
         shares = np.array([condition.share for condition in study.conditions])
         labels[CONDITION] = (CONDITION, condition_labels(study.conditions), {"over": study.over})
@@ -328,8 +343,10 @@ def is_measured(study: Study) -> bool:
     return study.road is not None and study.road.shape is not None
 
 
-def _of_road(effects: Mapping[str, float]) -> list[float]:
-    return [effects.get(name, 0.0) for name in ROAD_ERRORS]
+def _road_errors(study: Study) -> tuple[str, ...]:
+    """Source of each effect of an error of the measured road: the last has one in each band of its spectrum."""
+    bands = len(study.road.shape.ratio) if study.road is not None and study.road.shape is not None else 0
+    return (*ROAD_ERRORS[:-1], *(ROAD_ERRORS[-1:] * bands))
 
 
 def is_uncertain(study: Study) -> bool:

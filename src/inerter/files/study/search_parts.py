@@ -231,7 +231,7 @@ class RealResult(PartResult):
     status: str
     message: str = ""
     error_bound: float = nan  # relative, sampling apart
-    shared_errors: dict[str, float] = field(default_factory=dict)  # of that, those of the road
+    shared_errors: dict[str, tuple[float, ...]] = field(default_factory=dict)  # of that, those of the road
     kept: float = nan  # with the values of the ideal network
     kept_bound: float = nan  # relative
     kept_doubt: str = ""  # why that value is not certain

@@ -200,7 +200,7 @@ def test_a_long_sweep_is_shown_at_some_values_and_at_both_ends(sweep_study, tmp_
     shown = re.search(r"over k in kN/m, (\d+) of 300 values", text)
     assert shown
     assert 8 <= int(shown[1]) <= 17
-    assert "its improvement over the sweep lies between" in text
+    assert "12.0 % better at every k" in text
     page = report(StudyContents(sweep(stiffness=stiffness), sweep_study), tmp_path)
     assert '<th scope="row">10</th>' in page
     assert '<th scope="row">309</th>' in page

@@ -72,9 +72,23 @@ def test_designs_with_their_numbers():
     ]
 
 
+MANY = [10e3, 20e3, 30e3, 50e3, 100e3, 200e3, 300e3]  # stiffness [N/m]: more than a terminal shows
+
+
+def test_a_short_sweep_is_shown_at_all_its_values():
+    results = improved(sweep(["S1", "S2"], stiffness=MANY[::3]))
+    results["improvement"].loc[{"layout": "S2", "index": "J1"}] = [3.0, -2.0, 7.0]
+    values = [[float(v) for v in row] for row in results["value"].sel(index="J1").transpose("k", "layout", ...).values]
+    lines = terminal_text(results).split("\n")
+    assert lines[0] == "Best ride comfort (J1) in m/s^2, over k in kN/m"
+    shown = [[float(number) for number in line.split()] for line in lines[2:8:2]]
+    assert shown == [pytest.approx([k / 1e3, *row], rel=1e-3) for k, row in zip(MANY[::3], values, strict=True)]
+    assert [line.split() for line in lines[3:9:2]] == [["+3.0", "%"], ["-2.0", "%"], ["+7.0", "%"]]
+
+
 def test_a_sweep_by_its_best_and_its_worst():
-    results = improved(sweep(stiffness=[10e3, 100e3, 300e3]))
-    results["improvement"].loc[{"layout": "S2", "index": "J5"}] = [3.0, -2.0, 7.0]
+    results = improved(sweep(stiffness=MANY))
+    results["improvement"].loc[{"layout": "S2", "index": "J5"}] = [3.0, 1.0, 1.0, 1.0, -2.0, 1.0, 7.0]
     assert "  S2      +7.0 % at 300 kN/m  -2.0 % at 100 kN/m" in terminal_text(results).split("\n")
 
 
@@ -150,8 +164,10 @@ def test_curves_that_lie_on_each_other_do_not_cross():
 def test_a_status_that_is_not_ok_is_told():
     status = "unstable: the design has no finite norm"
     assert f"    ! {status}" in terminal_text(with_value(designs(), math.inf, status, layout="S2", index="J1"))
-    one_point = with_value(sweep(), math.inf, status, layout="S2", index="J1", k=10e3)
-    assert f"    ! {status} (1 of 5 values are not ok)" in terminal_text(one_point).split("\n")
+    one_point = with_value(sweep(stiffness=MANY), math.inf, status, layout="S2", index="J1", k=10e3)
+    assert f"    ! {status} (1 of 7 values are not ok)" in terminal_text(one_point).split("\n")
+    short = with_value(sweep(stiffness=MANY[:3]), math.inf, status, layout="S2", index="J1", k=10e3)
+    assert f"S2 at k = 10 kN/m: {status}" in terminal_text(short)
 
 
 def test_ten_layouts_in_one_block_each():
@@ -195,6 +211,7 @@ def test_verdicts_of_designs(change, sentence):
             "Best ride comfort compared with S1 of the same k: S2, 7.0 % better at k = 300 kN/m; "
             "its improvement over the sweep lies between -2.0 % and 7.0 %.",
         ),
+        ([3.36, 3.36, 3.36], "Best ride comfort compared with S1 of the same k: S2, 3.4 % better at every k."),
         ([0.0, -2.0, -math.inf], "Best ride comfort: no layout is better than S1 at any k."),
     ],
 )
@@ -250,7 +267,7 @@ def test_a_table_of_labels_alone_keeps_its_rows_and_doubts():
 
 
 def test_a_sweep_whose_baseline_has_no_value_shows_those_of_the_others():
-    results = sweep(["S1", "S2"], stiffness=[10e3, 100e3])
+    results = sweep(["S1", "S2"], stiffness=MANY)
     results = with_value(results, math.nan, "infeasible: no feasible design", layout="S1", index="J1")
     results["improvement"].loc[{"index": "J1"}] = math.nan
     least = results["value"].sel(layout="S2", index="J1").min().item()
@@ -309,8 +326,8 @@ def test_rows_that_share_a_label_are_told_apart_in_every_part_of_a_table():
 
 def test_a_terminal_has_the_values_of_a_sweep_where_improvements_are_largest_and_smallest() -> None:
     """Below each improvement the value of the index at that place, of the layout that has it."""
-    results = sweep()
-    better = results["improvement"] * xr.DataArray([0.5, 1.0, 0.2, 0.8, 0.7], dims="k")
+    results = sweep(stiffness=[10e3, 60e3, 120e3, 200e3, 250e3, 280e3, 300e3])
+    better = results["improvement"] * xr.DataArray([0.5, 1.0, 0.2, 0.8, 0.7, 0.7, 0.7], dims="k")
     text = terminal_text(results.assign(improvement=better.transpose(*results["improvement"].dims)))
     lines = text.splitlines()
     for index, unit in (("J1", "m/s^2"), ("J3", "N")):

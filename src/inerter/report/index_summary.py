@@ -266,14 +266,15 @@ def _sweep_headline(every: xr.Dataset, index: str) -> str:
     remaining = [1.0 - ends[1][0] / 100.0 for ends in found.values()]  # of the baseline
     names = _simplest_first(results, [list(found)[i] for i in equally_least(remaining)])
     (least, _), (largest, at) = found[names[0]]
+    over = " and ".join(swept)
     if largest < NOTICEABLE:
-        return f"Best {title}: no layout is better than {baseline} at any {' and '.join(swept)}."
+        return f"Best {title}: no layout is better than {baseline} at any {over}."
+    lowest, highest = format_percent_size(least), format_percent_size(largest)
+    best = f"Best {title} compared with {baseline} of the same {over}{by}: {_format_equal_layouts(names)}, {highest}"
+    if lowest == highest:
+        return f"{best} better at every {over}."
     where = place_text(results, at, named=True)
-    best = f"{_format_equal_layouts(names)}, {format_percent_size(largest)} better at {where}"
-    return (
-        f"Best {title} compared with {baseline} of the same {' and '.join(swept)}{by}: {best}; its "
-        f"improvement over the sweep lies between {format_percent_size(least)} and {format_percent_size(largest)}."
-    )
+    return f"{best} better at {where}; its improvement over the sweep lies between {lowest} and {highest}."
 
 
 def _missing_value_clause(results: xr.Dataset, index: str, layout: str) -> str:

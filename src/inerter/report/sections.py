@@ -18,7 +18,7 @@ from inerter.report.conditions import (
 from inerter.report.index_summary import over_the_sweep
 from inerter.report.limits import limit_tables
 from inerter.report.method_comparison import method_tables
-from inerter.report.tables import extreme_tables, is_searched, tables_of, trade_off_tables, where_all_are
+from inerter.report.tables import extreme_tables, is_searched, is_short, tables_of, trade_off_tables, where_all_are
 from inerter.table import Table
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ def design_sections(results: xr.Dataset) -> Iterator[Section]:
         "Best designs" if is_searched(results) else "Results",
         tables_of(results),
         remarks=_sweep_remarks(results) if swept else (),
-        brief=extreme_tables(results) if swept else None,
+        brief=extreme_tables(results) if swept and not is_short(results) else None,
     )
     if len(methods(results)) > 1:
         yield Section("The methods side by side", method_tables(results), columns=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import xarray as xr
 
@@ -32,6 +34,7 @@ from inerter.report.index_summary import best_layouts, extremes, is_compared, pl
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 
 _MOST_SWEPT = 16  # rows of a table over a sweep
+_MOST_ON_A_TERMINAL = 6  # values of a sweep; of more, the best and the worst
 _MOST_ACROSS = 9  # columns of a map
 _MOST_BETWEEN = 100  # swept values between two of them
 _MOST_FAILURES = 20
@@ -132,6 +135,11 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
 def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> Quantity:
     bound = float(design["other_error_bound"]) if "other_error_bound" in design else np.nan
     return Quantity(float(design["other_value"]), index_unit(results, other), bound=bound)
+
+
+def is_short(results: xr.Dataset) -> bool:
+    """Whether a terminal has room for all values of the sweep."""
+    return math.prod(results.sizes[place] for place in swept_places(results)) <= _MOST_ON_A_TERMINAL
 
 
 def extreme_tables(results: xr.Dataset) -> list[Table]:

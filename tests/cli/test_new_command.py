@@ -1,5 +1,7 @@
 """`inerter new`: a file for every vehicle that runs as it is, and never takes the place of another."""
 
+import errno
+import pathlib
 import re
 import tomllib
 
@@ -60,6 +62,15 @@ def test_it_runs(tmp_path, monkeypatch):
     assert call(["new"]) == 0
     assert call(["run", "quarter-car.toml", "-j", "1"]) == 0
     assert (tmp_path / "quarter-car-results" / "report.html").exists()
+
+
+def test_a_place_that_takes_no_file_is_one_sentence(tmp_path, monkeypatch, capsys):
+    def refuse(self, *arguments, **more):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(pathlib.Path, "open", refuse)
+    assert call(["new", "-o", str(tmp_path / "car.toml")]) == 2
+    assert "car.toml: cannot be written (Read-only file system). Choose another" in capsys.readouterr().err
 
 
 def test_it_can_be_printed(tmp_path, monkeypatch, capsys):

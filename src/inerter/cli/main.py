@@ -31,6 +31,7 @@ from inerter.cli.options import (
     LongWork,
     Output,
     SweepPoint,
+    Whole,
 )
 from inerter.cli.pulse import alive
 from inerter.cli.reading import DEFAULT_READING, DEFAULT_SEARCH, ReadingOptions, SearchOptions
@@ -496,10 +497,10 @@ def serve(
     study: Path | None = None,
     /,
     *,
-    port: Annotated[int | None, Parameter(help="Port to listen on; default: a free port.")] = None,
+    port: Annotated[int | None, Whole, Parameter(help="Port to listen on; default: a free port.")] = None,
     browser: Annotated[bool, Parameter(help="Open the page in the browser.")] = True,
-    limit: Annotated[int, Parameter(help="Maximum size of a request in bytes.")] = LIMIT,
-    record_limit: Annotated[int, Parameter(help="Maximum size of a measured record in bytes.")] = RECORD_LIMIT,
+    limit: Annotated[int, Whole, Parameter(help="Maximum size of a request in bytes.")] = LIMIT,
+    record_limit: Annotated[int, Whole, Parameter(help="Maximum size of a measured record in bytes.")] = RECORD_LIMIT,
     folder: Annotated[
         Path | None, Parameter(help="Folder for jobs and records; default: a temporary folder, deleted at the end.")
     ] = None,

@@ -42,6 +42,8 @@ def new(vehicle: str | None, output: Path | None, force: bool = False) -> None:
         ) from None
     except (FileNotFoundError, NotADirectoryError):
         raise StudyError(f"{path}: folder not found. Choose another file with -o.") from None
+    except OSError as error:
+        raise StudyError(f"{path}: cannot be written ({error.strerror}). Choose another file with -o.") from None
     say(f"wrote {path}; run it: {shlex.join(['inerter', 'run', str(path)])}")
 
 

@@ -4,17 +4,28 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated
 
-from cyclopts import Parameter
+from cyclopts import Parameter, Token
 
 from inerter.errors import StudyError
+from inerter.units import quote_value
 
+
+def _whole_number(_: type, tokens: Sequence[Token]) -> int:
+    """The integer of an option, which cyclopts would round; raises `ValueError` for any other text."""
+    try:
+        return int(tokens[0].value)
+    except ValueError:
+        raise ValueError(f"got {quote_value(tokens[0].value)}; expected an integer.") from None
+
+
+Whole = Parameter(converter=_whole_number)
 Output = Annotated[Path | None, Parameter(name=["--output", "-o"], help="Folder for the results.")]
-Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help="Number of processes; default: all cores.")]
+Jobs = Annotated[int | None, Whole, Parameter(name=["--jobs", "-j"], help="Number of processes; default: all cores.")]
 
 
 @dataclass(frozen=True)
@@ -94,5 +105,5 @@ DEFAULT_WORK = WorkOptions()
 LongWork = Annotated[WorkOptions, Parameter(name="*")]
 ForceFile = Annotated[bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")]
 BestFor = Annotated[str | None, Parameter(help="Index for which designs are best, if values are free.")]
-SweepPoint = Annotated[int | None, Parameter(help="Number of the point of a sweep, from 1.")]
+SweepPoint = Annotated[int | None, Whole, Parameter(help="Number of the point of a sweep, from 1.")]
 AtCondition = Annotated[str | None, Parameter(help="Name or number of the operating condition.")]

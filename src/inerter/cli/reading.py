@@ -7,6 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
+from inerter.cli.options import Whole
 from inerter.errors import StudyError
 
 
@@ -59,8 +60,8 @@ DEFAULT_READING = ReadingOptions()
 class SearchOptions:
     """Options on the search and on the scales of the sensors; None where not given."""
 
-    seed: Annotated[int | None, Parameter(help="Seed of the starting points; default: 0.")] = None
-    starts: Annotated[int | None, Parameter(help="Number of starting points of the search, at least 8.")] = None
+    seed: Annotated[int | None, Whole, Parameter(help="Seed of the starting points; default: 0.")] = None
+    starts: Annotated[int | None, Whole, Parameter(help="Number of starting points of the search, at least 8.")] = None
     force_scale: Annotated[
         str | None,
         Parameter(

@@ -31,6 +31,7 @@ _AWAY = "Move it away, or choose another folder with -o."
 _WORDS = {
     "format": "another format",
     "inerter": "another version of inerter",
+    "study": "another study file",
     "numbers": "other sources or numerical libraries",
 }
 Entry = dict[str, Any]
@@ -159,7 +160,7 @@ def _check(body: bytes, before: str) -> str:
 
 def _differences(found: Entry, wanted: Entry) -> str:
     return ", ".join(
-        _WORDS.get(key) or f"{key}: {str(found.get(key))[:12]!r} there, {str(value)[:12]!r} here"
+        _WORDS.get(key) or f"{key} {found.get(key)!r} there, {value!r} here"
         for key, value in wanted.items()
         if found.get(key) != value
     )

@@ -28,6 +28,9 @@ real_inerters = { friction = "10 N", best = 1 }"""
 SHOWS = """values => Object.entries(values).every(([index, value]) =>
   Math.abs(document.querySelector(`td[data-index=${index}]`)?.dataset.value / value - 1) < 1e-6)"""
 
+WHOLE = """label => [...document.querySelectorAll(`.job [aria-label^='${label}']`)].every(each =>
+  each.clientWidth > 0 && each.scrollWidth <= each.clientWidth)"""
+
 KEPT = """([place, entry]) => JSON.stringify(place.reduce((table, key) => table?.[key],
   JSON.parse(sessionStorage.getItem('inerter.document')).study)) === JSON.stringify(entry)"""
 
@@ -119,6 +122,12 @@ def test_networks_of_a_search_are_taken_into_the_editor(served: Served, searchin
     job_row.locator("circle.point").first.press("Enter")
     shows(simplest, {"J3": simplest["value"]})
     real = searched["real_inerters"][0]
+    assert page.viewport_size is not None
+    wide = page.viewport_size
+    page.set_viewport_size({"width": 420, "height": 800})
+    for label in ("Ranking", "Real inerters"):  # rows are whole on a narrow screen
+        page.wait_for_function(WHOLE, arg=label)
+    page.set_viewport_size(wide)
     page.select_option(".answers select >> nth=0", "statistical-linearisation")
     job_row.get_by_label("Real inerters").get_by_role("button", name="Take", exact=True).first.click()
     shows(real, {"J3": real["value"]})

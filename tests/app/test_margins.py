@@ -104,6 +104,30 @@ def test_elements_of_a_real_inerter_have_words_as_names() -> None:
     assert gap.sentence == f"Backlash of inerter b: S2 is better than S1 {gap.message[21:]} to each side."
 
 
+def test_break_even_values_in_each_condition_are_those_of_its_car_alone() -> None:
+    """The stiffness of the shaft, of cars that are built with the mass and the speed of each condition."""
+    study = study_from(example_tables("conditions"))
+    values = {"S1": {"c": 1346.3}, "S3": {"c": 1497.8, "b": 314.93}}
+    design, baseline = (study.design(name).with_values(values[name]) for name in ("S3", "S1"))
+    asked = MarginRequest(study, "S3", design, "S1", baseline, "J3", "norm")
+    stiffness = next(trial for trial in _trials(asked) if trial.parameter == "shaft_stiffness")
+    told = _break_even(asked, stiffness)
+    k, b, shaft = it.Spring(30e3), it.Inerter(314.93), it.Spring(1e6, "own") | it.Damper(3200.0)
+    alone = {}
+    for name, mass, speed in (("empty", 180.0, 15.0), ("loaded", 320.0, 30.0)):
+        real, plain = (
+            it.QuarterCar(mass, 35.0, 150e3, strut)
+            for strut in (k | it.Damper(1497.8) - (shaft - b), k | it.Damper(1346.3))
+        )
+        load = it.TyreLoad(it.Road(5e-7, speed))
+        found = it.break_even(real, plain, load, parameter="own", method=it.Norm(), bounds=(1e3, 1e8))
+        alone[name] = found.value
+    assert {one.name: one.value for one in told.in_conditions} == pytest.approx(alone, rel=1e-9)
+    assert len({f"{value:.3g}" for value in alone.values()}) == 2  # the conditions differ
+    for one in told.in_conditions:
+        assert f"; in condition {one.name} above" in told.sentence
+
+
 def test_the_friction_of_an_inerter_is_not_that_of_the_baseline() -> None:
     """The baseline keeps its friction while that of the inerter varies, which has a name of its own in the library."""
     elements = {**DOCUMENT["elements"], "f": "300 N"}

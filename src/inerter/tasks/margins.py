@@ -12,18 +12,20 @@ from math import isfinite, nan
 from inerter.decision.of_study import nonlinear_elements
 from inerter.decision.results import Improvement
 from inerter.errors import StatusKind
+from inerter.files.study.conditions import MOST_LISTED, condition_labels
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.speeds import BESIDE, estimate_at_speed, is_at_one_speed, quick_method
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import capital, format_list, format_percent_size, format_quantity, format_share
 from inerter.indices.names import title_with_name
 from inerter.methods.compare import compare_estimates
+from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import evaluate
 from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps, simulating_method
 from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Series, Spring
 from inerter.networks.elements.algebra import CombinedNetwork
-from inerter.optimisation.budget import better_clause
+from inerter.optimisation.budget import BreakEven, better_clause
 from inerter.statements import Severity
 from inerter.tasks.budgets import element_break_even, range_text
 from inerter.uncertainty.tolerance import tolerance_analysis
@@ -57,6 +59,16 @@ class MarginRequest:
         return title_with_name(self.study.index(self.index).title, self.index)
 
 
+@dataclass(frozen=True)
+class ConditionMargin:
+    """Break-even value [SI] in one operating condition, None if there is none; `text` is its range, or why."""
+
+    name: str
+    value: float | None
+    status: str
+    text: str
+
+
 @dataclass(frozen=True, kw_only=True)
 class BreakEvenMargin:
     """Break-even value of one element [SI], None if there is none; `is_present` is False for one of a real inerter."""
@@ -69,6 +81,7 @@ class BreakEvenMargin:
     standard_error: float | None = None
     interval: tuple[float, float] | None = None
     error_bound: float | None = None
+    in_conditions: list[ConditionMargin] = field(default_factory=list)
     status: str
     message: str
     short: str = ""  # "f up to 414 +- 18 N", "friction up to 390 +- 17 N" of one of a real inerter
@@ -248,10 +261,7 @@ def _break_even(asked: MarginRequest, trial: _Trial) -> BreakEvenMargin:
 def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEvenMargin:
     study, element = asked.study, trial.element
     try:
-        by = study.method(method, asked.threads)
-        found = element_break_even(
-            trial.design, asked.baseline, study.over_conditions(asked.index), trial.parameter, by
-        )
+        found = _find_break_even(asked, trial, method, study.over_conditions(asked.index))
     except FAILURES as error:
         message = str(error).rstrip(".")
         sentence = f"{capital(trial.words)}: break-even value not computed ({message})."
@@ -266,18 +276,20 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         )
     known, short, message = isfinite(found.value), "", found.status.message
     who = f"{asked.layout} is better than {asked.baseline_layout}"
+    each = _in_conditions(asked, trial, method)
+    conditions = "".join(f"; in condition {one.name} {one.text}" for one in each)
     if found.status.kind is StatusKind.UNBOUNDED:
         message = better_clause(found.ranges, trial.brief, found.unit)
     if known:
-        ends = [crossing.value for crossing in found.crossings]
-        scatter, bound = found.standard_error, found.error_bound
-        end = range_text(found.value, found.unit, scatter, bound, ends, at_most=element.may_vanish) + trial.side
+        end = _end_of_range(trial, found)
         short = f"{trial.brief} {end}"
-        sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {brief_words_of(method)}."
+        by = brief_words_of(method)
+        sentence = f"{capital(trial.words)}: {who} {end} in {asked.words}, by {by}{conditions}."
     elif found.status.kind is StatusKind.UNBOUNDED:
-        sentence = f"{capital(trial.words)}: {better_clause(found.ranges, trial.brief, found.unit, who)}{trial.side}."
+        clause = better_clause(found.ranges, trial.brief, found.unit, who)
+        sentence = f"{capital(trial.words)}: {clause}{trial.side}{conditions}."
     else:
-        sentence = f"{capital(trial.words)}: {message.rstrip('.')}."
+        sentence = f"{capital(trial.words)}: {message.rstrip('.')}{conditions}."
     is_sure = found.status.severity is Severity.INFO
     doubt = f" Not certain: {message.rstrip('.')}." if known and not is_sure else ""
     return BreakEvenMargin(
@@ -289,11 +301,51 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         standard_error=number_or_none(found.standard_error),
         interval=found.interval if all(map(isfinite, found.interval)) else None,
         error_bound=number_or_none(found.error_bound),
+        in_conditions=each,
         status=found.status.kind.value,
         message=message,
         short=short,
         sentence=f"{sentence}{doubt}",
     )
+
+
+def _find_break_even(asked: MarginRequest, trial: _Trial, method: str, index: IndexLike) -> BreakEven:
+    by = asked.study.method(method, asked.threads)
+    return element_break_even(trial.design, asked.baseline, index, trial.parameter, by)
+
+
+def _end_of_range(trial: _Trial, found: BreakEven) -> str:
+    ends = [crossing.value for crossing in found.crossings]
+    errors = found.standard_error, found.error_bound
+    return range_text(found.value, found.unit, *errors, ends, at_most=trial.element.may_vanish) + trial.side
+
+
+def _in_conditions(asked: MarginRequest, trial: _Trial, method: str) -> list[ConditionMargin]:
+    """Break-even value in each of several conditions of the study; none of many, each of which takes its time."""
+    study = asked.study
+    if not 1 < len(study.conditions) <= MOST_LISTED:
+        return []
+    each = []
+    for name, index in zip(condition_labels(study.conditions), study.in_each(study.index(asked.index)), strict=True):
+        try:
+            found = _find_break_even(asked, trial, method, index)
+        except FAILURES as error:
+            each.append(
+                ConditionMargin(name, None, StatusKind.FAILED.value, f"not computed ({str(error).rstrip('.')})")
+            )
+            continue
+        if isfinite(found.value):
+            doubt = (
+                "" if found.status.severity is Severity.INFO else f" (not certain: {found.status.message.rstrip('.')})"
+            )
+            each.append(
+                ConditionMargin(name, found.value, found.status.kind.value, _end_of_range(trial, found) + doubt)
+            )
+        else:
+            unbounded = found.status.kind is StatusKind.UNBOUNDED
+            why = better_clause(found.ranges, trial.brief, found.unit, "") if unbounded else found.status.message
+            each.append(ConditionMargin(name, None, found.status.kind.value, why.strip().rstrip(".")))
+    return each
 
 
 def _speeds(asked: MarginRequest) -> Iterator[SpeedMargin]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import pickle
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -27,11 +29,13 @@ from inerter.files.study.running import StudyResult
 from inerter.identification import statements as of_identification
 from inerter.identification.fit import Explanation, Localisation
 from inerter.identification.statements import friction
+from inerter.identification.statements.causes import Suspect
 from inerter.identification.statements.findings import FitFinding
 from inerter.identification.statements.identifiability import Identifiability, Verdict
+from inerter.identification.statements.patterns import MisfitPattern
 from inerter.methods.notes import Note
 from inerter.records import finding_texts
-from inerter.records.finding import Finding
+from inerter.records.finding import Finding, FindingKind
 from inerter.records.finding_texts import RecordFinding
 from inerter.records.remedy import Action, Remedy
 from inerter.report.options import _OPTIONS
@@ -134,9 +138,25 @@ def test_every_kind_of_every_catalogue_has_a_sentence(catalogue: ModuleType) -> 
     enums = [one for one in there if isclass(one) and issubclass(one, StrEnum) and one.__module__ == catalogue.__name__]
     for kinds in enums:
         own = [table for table in tables if isinstance(next(iter(table)), kinds)]
-        assert own
+        stated = [kind for kind in kinds if callable(said := getattr(kind, "_sentence", "")) or said]
+        assert own or stated == [*kinds]
         assert all(set(table) == set(kinds) for table in own)
     assert enums or catalogue is friction  # whose kinds are a literal type
+
+
+@pytest.mark.parametrize("kinds", [RecordFinding, FitFinding, MisfitPattern, Suspect])
+def test_a_kind_is_its_key(kinds: type[StrEnum]) -> None:
+    for kind in kinds:
+        assert kinds(str(kind)) is kind
+        assert pickle.loads(pickle.dumps(kind)) is kind
+        assert json.loads(json.dumps(kind)) == kind.value == kind
+
+
+def test_a_kind_without_its_sentence_is_refused() -> None:
+    with pytest.raises(TypeError, match="sentence"):
+
+        class _Kinds(FindingKind):
+            SILENT = "silent"
 
 
 def test_every_friction_law_has_a_sentence() -> None:

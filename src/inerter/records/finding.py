@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from enum import StrEnum
+from typing import Any, Self
 
 from inerter.records.remedy import Remedy, Text, in_python
 from inerter.statements import Severity, Statement
 
 
-class Kind(Protocol):
-    """A kind of finding, which formats its sentence."""
+class FindingKind(StrEnum):
+    """Kinds of findings, each with its sentence: a text, or a function that formats it."""
+
+    _sentence: str | Text | Callable[[Finding], str | Text]
+
+    def __new__(cls, key: str, sentence: str | Text | Callable[[Finding], str | Text]) -> Self:
+        kind = str.__new__(cls, key)
+        kind._value_ = key
+        kind._sentence = sentence
+        return kind
 
     def text(self, finding: Finding) -> Text:
-        """The parts of its sentence."""
-        ...
+        """The parts of the sentence of such a finding."""
+        sentence = self._sentence(finding) if callable(self._sentence) else self._sentence
+        return (sentence,) if isinstance(sentence, str) else sentence
 
 
 @dataclass(frozen=True)
@@ -25,7 +35,7 @@ class Finding(Statement):
     `error`: no model can be fitted to the record; `warning`: results may be affected; `info`: no action required.
     """
 
-    kind: Kind
+    kind: FindingKind
     severity: Severity = Severity.INFO
     about: str = ""  # a channel, a parameter, a record or a model
     numbers: Mapping[str, Any] = field(default_factory=dict)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from enum import StrEnum
-
 from inerter.formatting import (
     format_alike,
     format_number,
@@ -13,7 +10,7 @@ from inerter.formatting import (
     format_with_error,
     significant_digits,
 )
-from inerter.records.finding import Finding
+from inerter.records.finding import Finding, FindingKind
 from inerter.records.record import CHANNELS
 from inerter.records.remedy import Action, Remedy, Text
 from inerter.statements import Severity
@@ -30,64 +27,10 @@ _LIMITED = (
 )
 
 
-class RecordFinding(StrEnum):
-    """The kinds of findings in a record."""
-
-    FEW_SAMPLES = "few-samples"
-    SAMPLING = "sampling"
-    GAPS = "gaps"
-    JITTER = "jitter"
-    LOST_SAMPLES = "lost-samples"
-    FILLED = "filled"
-    CUT = "cut"
-    CONSTANT = "constant"
-    IMPLAUSIBLE = "implausible"
-    TIME_SCALE = "time-scale"
-    SATURATION = "saturation"
-    DISPLACEMENT_STEPS = "displacement-steps"
-    FORCE_STEPS = "force-steps"
-    DISPLACEMENT_OFFSET = "displacement-offset"
-    FORCE_OFFSET = "force-offset"
-    DISPLACEMENT_DRIFT = "displacement-drift"
-    FORCE_DRIFT = "force-drift"
-    SWAPPED = "swapped"
-    SPIKES = "spikes"
-    HELD = "held"
-    SLOWER = "slower-channel"
-    JOINED = "joined"
-    HIDDEN_JITTER = "hidden-jitter"
-    CLOCK_DRIFT = "clock-drift"
-    HUM = "hum"
-    LINE = "line"
-    SIGN = "sign"
-    FORCE_REVERSED = "force-reversed"
-    DELAY = "delay"
-    BANDWIDTH = "bandwidth"
-    UNDERSAMPLED = "undersampled"
-
-    def text(self, finding: Finding) -> Text:
-        """The parts of the sentence of such a finding."""
-        return _TEXTS[self](finding)
-
-
-QUESTIONABLE = (RecordFinding.IMPLAUSIBLE, RecordFinding.TIME_SCALE)  # units, which a user may correct before a fit
-
-
 def _format_sampling(f: Finding) -> str:
     usual, duration = f.numbers["interval"], format_quantity(f.numbers["duration"], "s", 6)
     every = f"every {format_quantity(usual, 's', 6)} ({format_quantity(1.0 / usual, 'Hz', 6)})"
     return f"{round(f.numbers['samples'])} samples over {duration}, {every}"
-
-
-def _few_samples_text(f: Finding) -> Text:
-    return (
-        f"The record has only {round(f.numbers['samples'])} samples; a fit requires hundreds, over several periods of "
-        f"the motion.",
-    )
-
-
-def _sampling_text(f: Finding) -> Text:
-    return (f"{_format_sampling(f)}, {'evenly spaced' if f.numbers['even'] else 'not exactly evenly spaced'}.",)
 
 
 def _gaps_text(f: Finding) -> Text:
@@ -162,16 +105,16 @@ def _format_count(count: float, noun: str) -> str:
     return f"one {noun}" if count == 1.0 else f"{round(count)} {noun}s"
 
 
-def _hidden_jitter_text(f: Finding) -> Text:
+def _hidden_jitter_text(f: Finding) -> str:
     n = f.numbers
     return (
         f"The noise of the displacement grows with speed although the times are even: sampling jitter of "
         f"{format_quantity(n['jitter'], 's', 3)} (r.m.s., {format_share(n['jitter'] / n['interval'], 2)} of an "
-        f"interval). Sample both channels with one hardware clock, or record the true times.",
+        f"interval). Sample both channels with one hardware clock, or record the true times."
     )
 
 
-def _clock_drift_text(f: Finding) -> Text:
+def _clock_drift_text(f: Finding) -> str:
     n = f.numbers
     late, error = format_with_error(abs(n["growth"]), n["standard_error"], "s")
     rate = format_number(1e6 * abs(n["rate"]), significant_digits(n["rate"], n["standard_error"] / abs(n["growth"]), 3))
@@ -179,39 +122,28 @@ def _clock_drift_text(f: Finding) -> Text:
         f"The phase between force and displacement drifts: the force is {late} "
         f"{'later' if n['growth'] > 0.0 else 'earlier'} at the end than at the start (standard error {error}). The "
         f"clocks of the channels differ by {rate} ppm, or the losses of the device change. Sample both channels with "
-        f"one clock.",
+        f"one clock."
     )
 
 
-def _line_text(f: Finding) -> Text:
+def _line_text(f: Finding) -> str:
     n = f.numbers
     alias = f" or an alias of it, such as {format_quantity(n['rate'] - n['frequency'], 'Hz')}"
     return (
         f"The force has an isolated spectral line of {format_quantity(n['amplitude'], 'N', 3)} at "
         f"{format_quantity(n['frequency'], 'Hz')} that is no harmonic of the motion: pickup at that frequency{alias}. "
-        f"Check grounding and shielding, and use an anti-aliasing filter.",
+        f"Check grounding and shielding, and use an anti-aliasing filter."
     )
 
 
-def _filled_samples_text(f: Finding) -> Text:
+def _filled_samples_text(f: Finding) -> str:
     many, longest = round(f.numbers["samples"]), round(f.numbers["longest"])
-    return (f"Missing samples of the {f.about}, interpolated: {many}, up to {longest} in a row.",)
+    return f"Missing samples of the {f.about}, interpolated: {many}, up to {longest} in a row."
 
 
-def _truncated_file_text(f: Finding) -> Text:
-    return ("The file is truncated: its last samples are missing.",)
-
-
-def _constant_channel_text(f: Finding) -> Text:
-    return (
-        f"The {f.about} is constant, {format_quantity(f.numbers['value'], CHANNELS[f.about], 6)}, so no model can be "
-        f"fitted. Check the connection of the sensor and the selection of the channel.",
-    )
-
-
-def _implausible_amplitude_text(f: Finding) -> Text:
+def _implausible_amplitude_text(f: Finding) -> str:
     size = format_quantity(f.numbers["amplitude"], CHANNELS[f.about])
-    return (f"The {f.about} has an implausible amplitude of {size}. Check its unit.",)
+    return f"The {f.about} has an implausible amplitude of {size}. Check its unit."
 
 
 def _time_scale_text(f: Finding) -> Text:
@@ -242,11 +174,11 @@ def _saturation_text(f: Finding) -> Text:
     return (f"The force is constant at an extreme of {where} consecutive samples: ", *_LIMITED)
 
 
-def _resolution_text(f: Finding) -> Text:
+def _resolution_text(f: Finding) -> str:
     n = f.numbers
     coarse = " That is coarse: use more of the range of the sensor." if n["levels"] < COARSE else ""
     step = format_quantity(n["step"], CHANNELS[f.about], 3)
-    return (f"The {f.about} has a resolution of {step}, {round(n['levels'])} steps over its range.{coarse}",)
+    return f"The {f.about} has a resolution of {step}, {round(n['levels'])} steps over its range.{coarse}"
 
 
 def _offset_text(f: Finding) -> Text:
@@ -267,18 +199,18 @@ def _drift_text(f: Finding) -> Text:
     )
 
 
-def _swapped_columns_text(f: Finding) -> Text:
+def _swapped_columns_text(f: Finding) -> str:
     ratio = f.numbers["displacement"] / max(f.numbers["force"], 1e-12)
     return (
         f"The displacement is {format_number(ratio, 3)} times as rough as the force from sample to sample, but a "
-        f"displacement should be smoother than the force. Check whether the two columns are swapped.",
+        f"displacement should be smoother than the force. Check whether the two columns are swapped."
     )
 
 
-def _hum_text(f: Finding) -> Text:
+def _hum_text(f: Finding) -> str:
     n = f.numbers
     hum = f"{format_quantity(n['amplitude'], 'N', 3)} at {format_quantity(n['frequency'], 'Hz', 6)}"
-    return (f"The force contains mains hum: {hum}. Check the grounding of the load cell.",)
+    return f"The force contains mains hum: {hum}. Check the grounding of the load cell."
 
 
 def _format_correlations(f: Finding) -> str:
@@ -286,24 +218,16 @@ def _format_correlations(f: Finding) -> str:
     return f"correlation {inertia} with the acceleration, {loss} with the velocity"
 
 
-def _sign_text(f: Finding) -> Text:
+def _sign_text(f: Finding) -> str:
     inertia, loss = f.numbers["with_acceleration"], f.numbers["with_velocity"]
     if max(abs(inertia), abs(loss)) < CLEAR:
-        return (f"The force has no clear correlation with the motion ({_format_correlations(f)}).",)
+        return f"The force has no clear correlation with the motion ({_format_correlations(f)})."
     if inertia < -CLEAR:
         return (
             f"The force opposes the acceleration but dissipates energy ({_format_correlations(f)}), as below the "
-            f"resonance with a spring.",
+            f"resonance with a spring."
         )
-    return (f"The force has the sign of inertia and losses ({_format_correlations(f)}).",)
-
-
-def _reversed_force_text(f: Finding) -> Text:
-    return (
-        f"The force is reversed: it opposes the motion, and the device would generate energy "
-        f"({_format_correlations(f)}). Force is positive in tension, displacement when the device lengthens.",
-        Remedy(Action.REVERSE_FORCE),
-    )
+    return f"The force has the sign of inertia and losses ({_format_correlations(f)})."
 
 
 _WHY = {
@@ -333,7 +257,7 @@ def _delay_text(f: Finding) -> Text:
     return (f"{said} (standard error {known}). ", Remedy(Action.SHIFT_FORCE, late), " removes it.")
 
 
-def _bandwidth_text(f: Finding) -> Text:
+def _bandwidth_text(f: Finding) -> str:
     n = f.numbers
     why = (
         "as specified"
@@ -344,49 +268,77 @@ def _bandwidth_text(f: Finding) -> Text:
         f"Displacement low-pass filtered at {format_quantity(n['bandwidth'], 'Hz')} ({why}): attenuation "
         f"{format_share(n['attenuation'], 2)} at {format_quantity(n['highest'], 'Hz', 3)}, r.m.s. noise "
         f"{format_quantity(n['velocity_noise'], 'm/s', 2)} in the velocity and "
-        f"{format_quantity(n['acceleration_noise'], 'm/s^2', 2)} in the acceleration.",
+        f"{format_quantity(n['acceleration_noise'], 'm/s^2', 2)} in the acceleration."
     )
 
 
-def _undersampling_text(f: Finding) -> Text:
+def _undersampling_text(f: Finding) -> str:
     n = f.numbers
     return (
         f"The displacement has components up to {format_quantity(n['highest'], 'Hz', 3)}, close to the Nyquist "
         f"frequency of {format_quantity(n['limit'], 'Hz')}: faster components are aliased. Sample at five times the "
-        f"highest frequency of the motion.",
+        f"highest frequency of the motion."
     )
 
 
-_TEXTS: Mapping[RecordFinding, Callable[[Finding], Text]] = {
-    RecordFinding.FEW_SAMPLES: _few_samples_text,
-    RecordFinding.SAMPLING: _sampling_text,
-    RecordFinding.GAPS: _gaps_text,
-    RecordFinding.JITTER: _jitter_text,
-    RecordFinding.LOST_SAMPLES: _lost_samples_text,
-    RecordFinding.FILLED: _filled_samples_text,
-    RecordFinding.CUT: _truncated_file_text,
-    RecordFinding.CONSTANT: _constant_channel_text,
-    RecordFinding.IMPLAUSIBLE: _implausible_amplitude_text,
-    RecordFinding.TIME_SCALE: _time_scale_text,
-    RecordFinding.SATURATION: _saturation_text,
-    RecordFinding.DISPLACEMENT_STEPS: _resolution_text,
-    RecordFinding.FORCE_STEPS: _resolution_text,
-    RecordFinding.DISPLACEMENT_OFFSET: _offset_text,
-    RecordFinding.FORCE_OFFSET: _offset_text,
-    RecordFinding.DISPLACEMENT_DRIFT: _drift_text,
-    RecordFinding.FORCE_DRIFT: _drift_text,
-    RecordFinding.SWAPPED: _swapped_columns_text,
-    RecordFinding.SPIKES: _spikes_text,
-    RecordFinding.HELD: _held_values_text,
-    RecordFinding.SLOWER: _slower_channel_text,
-    RecordFinding.JOINED: _joint_text,
-    RecordFinding.HIDDEN_JITTER: _hidden_jitter_text,
-    RecordFinding.CLOCK_DRIFT: _clock_drift_text,
-    RecordFinding.HUM: _hum_text,
-    RecordFinding.LINE: _line_text,
-    RecordFinding.SIGN: _sign_text,
-    RecordFinding.FORCE_REVERSED: _reversed_force_text,
-    RecordFinding.DELAY: _delay_text,
-    RecordFinding.BANDWIDTH: _bandwidth_text,
-    RecordFinding.UNDERSAMPLED: _undersampling_text,
-}
+class RecordFinding(FindingKind):
+    """The kinds of findings in a record."""
+
+    FEW_SAMPLES = (
+        "few-samples",
+        lambda f: (
+            f"The record has only {round(f.numbers['samples'])} samples; a fit requires hundreds, over several periods "
+            f"of the motion."
+        ),
+    )
+    SAMPLING = (
+        "sampling",
+        lambda f: f"{_format_sampling(f)}, {'evenly spaced' if f.numbers['even'] else 'not exactly evenly spaced'}.",
+    )
+    GAPS = "gaps", _gaps_text
+    JITTER = "jitter", _jitter_text
+    LOST_SAMPLES = "lost-samples", _lost_samples_text
+    FILLED = "filled", _filled_samples_text
+    CUT = "cut", "The file is truncated: its last samples are missing."
+    CONSTANT = (
+        "constant",
+        lambda f: (
+            f"The {f.about} is constant, {format_quantity(f.numbers['value'], CHANNELS[f.about], 6)}, so no model can "
+            f"be fitted. Check the connection of the sensor and the selection of the channel."
+        ),
+    )
+    IMPLAUSIBLE = "implausible", _implausible_amplitude_text
+    TIME_SCALE = "time-scale", _time_scale_text
+    SATURATION = "saturation", _saturation_text
+    DISPLACEMENT_STEPS = "displacement-steps", _resolution_text
+    FORCE_STEPS = "force-steps", _resolution_text
+    DISPLACEMENT_OFFSET = "displacement-offset", _offset_text
+    FORCE_OFFSET = "force-offset", _offset_text
+    DISPLACEMENT_DRIFT = "displacement-drift", _drift_text
+    FORCE_DRIFT = "force-drift", _drift_text
+    SWAPPED = "swapped", _swapped_columns_text
+    SPIKES = "spikes", _spikes_text
+    HELD = "held", _held_values_text
+    SLOWER = "slower-channel", _slower_channel_text
+    JOINED = "joined", _joint_text
+    HIDDEN_JITTER = "hidden-jitter", _hidden_jitter_text
+    CLOCK_DRIFT = "clock-drift", _clock_drift_text
+    HUM = "hum", _hum_text
+    LINE = "line", _line_text
+    SIGN = "sign", _sign_text
+    FORCE_REVERSED = (
+        "force-reversed",
+        lambda f: (
+            (
+                f"The force is reversed: it opposes the motion, and the device would generate energy "
+                f"({_format_correlations(f)}). Force is positive in tension, displacement when the device lengthens.",
+                Remedy(Action.REVERSE_FORCE),
+            )
+        ),
+    )
+    DELAY = "delay", _delay_text
+    BANDWIDTH = "bandwidth", _bandwidth_text
+    UNDERSAMPLED = "undersampled", _undersampling_text
+
+
+QUESTIONABLE = (RecordFinding.IMPLAUSIBLE, RecordFinding.TIME_SCALE)  # units, which a user may correct before a fit

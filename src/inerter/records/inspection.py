@@ -221,7 +221,7 @@ def _steps(record: Record) -> list[Finding]:
         if step == 0.0:
             continue
         levels = float(np.ptp(values)) / step
-        kind = RecordFinding(f"{role}-steps")
+        kind = RecordFinding[f"{role}_steps".upper()]
         severity = Severity.WARNING if levels < COARSE else Severity.INFO
         result.append(Finding(kind, severity, role, {"step": step, "levels": levels}))
     return result
@@ -234,7 +234,7 @@ def _offsets(record: Record) -> list[Finding]:
         offset, size = float(np.mean(values)), 0.5 * float(np.ptp(values))
         severity = Severity.WARNING if abs(offset) > LARGE * size else Severity.INFO
         numbers = {"mean": offset, "amplitude": size}
-        result.append(Finding(RecordFinding(f"{role}-offset"), severity, role, numbers))
+        result.append(Finding(RecordFinding[f"{role}_offset".upper()], severity, role, numbers))
     return result
 
 
@@ -255,7 +255,7 @@ def _drift(record: Record) -> list[Finding]:
         change, size = min(changes, key=abs), float(np.ptp(values))
         if changes[0] * changes[1] > 0.0 and abs(change) > 0.1 * size:
             numbers = {"change": change, "range": size}
-            result.append(Finding(RecordFinding(f"{role}-drift"), Severity.WARNING, role, numbers))
+            result.append(Finding(RecordFinding[f"{role}_drift".upper()], Severity.WARNING, role, numbers))
     return result
 
 

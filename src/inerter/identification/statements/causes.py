@@ -5,61 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from enum import StrEnum
-from typing import Any
+from typing import Any, Self
 
 from inerter.formatting import format_alike, format_number, format_quantity, format_share
 from inerter.records.remedy import Action, Remedy, Text
 
 Details = Mapping[str, Any]
-
-
-class Suspect(StrEnum):
-    """Name of a possible cause."""
-
-    GAIN = "gain"
-    DELAY = "delay"
-    FILTERED_DISPLACEMENT = "filtered displacement"
-    FILTERED_FORCE = "filtered force"
-    DRIFT = "drift"
-    FIXTURE_MASS = "fixture mass"
-    OFFSET = "offset or asymmetric friction"
-    LOST_SAMPLES = "lost samples"
-    DRY_FRICTION = "dry friction"
-    VISCOUS_FRICTION = "viscous friction"
-    ELASTIC = "elastic device"
-    RIGID = "rigid device"
-    BACKLASH = "backlash"
-    STRIBECK = "Stribeck friction"
-    BY_POSITION = "friction by position"
-    ASYMMETRIC = "asymmetric friction"
-    RIPPLE = "friction ripple"
-    PRESLIDING = "presliding"
-    QUADRATIC = "quadratic damping"
-    STIFFENING = "stiffening shaft"
-    SECOND_GAP = "second gap"
-    SATURATION = "saturation"
-    CLOCK_DRIFT = "clock drift"
-    CROSS_TALK = "cross-talk"
-    FRAME = "frame resonance"
-    HIGH_PASSED_FORCE = "high-pass filtered force"
-    HIGH_PASSED_DISPLACEMENT = "high-pass filtered displacement"
-    END_STOP = "end stop"
-    IN_MOTION = "motion before the record"
-    HUM = "hum"
-    CHANGED_DEVICE = "changed device"
-    SPIKES = "spikes"
-    HELD = "held values"
-    SLOWER = "channel at a lower rate"
-    JOINED = "joined pieces"
-    BEYOND_BOUNDS = "value beyond the bounds"
-
-    def sentence(self, details: Details) -> str:
-        """The cause in words, for use after a colon."""
-        return _SENTENCES[self](details)
-
-    def remedy(self, details: Details) -> Text:
-        """The remedy in words."""
-        return _REMEDIES[self](details)
 
 
 def _delay_text(d: Details) -> str:
@@ -125,14 +76,6 @@ def _end_stop_text(d: Details) -> str:
     return f"an end stop of {stiffness} is touched within {reach} of the {ends} of the motion"
 
 
-def _hum_text(d: Details) -> str:
-    return (
-        f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at "
-        f"{format_quantity(d['frequency'], 'Hz')}, or at an alias of it such as "
-        f"{format_quantity(d['rate'] - d['frequency'], 'Hz')}"
-    )
-
-
 def _saturation_text(d: Details) -> str:
     upper, lower = format_alike([d["upper"], d["lower"]], "N", 3)
     return f"the force is clipped above {upper} and below -{lower} (load cell or amplifier saturated)"
@@ -144,10 +87,6 @@ def _changed_device_text(d: Details) -> str:
         for name, unit, before, after in d["values"]
     )
     return f"the device changes at {format_quantity(d['time'], 's')}" + (f": {values}" if values else "")
-
-
-def _cross_talk_text(d: Details) -> str:
-    return f"the load cell picks up {format_quantity(d['size'], d['unit'], 3)} of the {d['signal']}"
 
 
 def _beyond_bounds_text(d: Details) -> str:
@@ -163,134 +102,188 @@ def _second_gap_text(d: Details) -> str:
     return f"a second gap closes in the shaft at a deflection of {slack}, beyond which it is stiffer by {more}"
 
 
-def _slower_channels_text(d: Details) -> str:
-    return " and ".join(
-        f"the {role} was measured at one sample in {every} only, and {way} in between"
-        for role, every, way in d["channels"]
+def _model_remedy(d: Details) -> str:
+    return f"use a model such as {d['layout']} ({d['model']})"
+
+
+_NOT_MODELLED = "no model includes this law; use the values under this hypothesis, where available"
+
+
+class Suspect(StrEnum):
+    """Name of a possible cause, with its sentence and its remedy: texts, or functions that format them."""
+
+    _sentence: str | Callable[[Details], str]
+    _remedy: str | Text | Callable[[Details], str]
+
+    def __new__(
+        cls, key: str, sentence: str | Callable[[Details], str], remedy: str | Text | Callable[[Details], str]
+    ) -> Self:
+        suspect = str.__new__(cls, key)
+        suspect._value_, suspect._sentence, suspect._remedy = key, sentence, remedy
+        return suspect
+
+    GAIN = "gain", "the gain of the load cell is not one", ()
+    DELAY = "delay", _delay_text, ("estimate the delay too, with ", Remedy(Action.FIT_DELAY))
+    FILTERED_DISPLACEMENT = (
+        "filtered displacement",
+        lambda d: f"the displacement was low-pass filtered at {_corner_frequency_text(d)}",
+        "use the unfiltered displacement, or filter the force in the same way",
+    )
+    FILTERED_FORCE = (
+        "filtered force",
+        _filtered_force_text,
+        ("state the bandwidth of the load cell and its amplifier, ", Remedy(Action.FORCE_BANDWIDTH)),
+    )
+    DRIFT = (
+        "drift",
+        lambda d: f"the zero of the load cell drifts, by {format_quantity(d['drift'], 'N', 2)}",
+        ("warm the load cell up, or remove the drift, ", Remedy(Action.DETREND)),
+    )
+    FIXTURE_MASS = (
+        "fixture mass",
+        lambda d: f"a fixture mass of {format_quantity(d['mass'], 'kg')} between load cell and device",
+        ("weigh the fixture between load cell and device, and state its mass, ", Remedy(Action.FIXTURE_MASS)),
+    )
+    OFFSET = (
+        "offset or asymmetric friction",
+        _offset_text,
+        ("estimate the offset too, with ", Remedy(Action.FIT_OFFSET)),
+    )
+    LOST_SAMPLES = (
+        "lost samples",
+        _dropped_samples_text,
+        ("read the file with ", Remedy(Action.GAPS, "fill"), ", which interpolates them"),
+    )
+    DRY_FRICTION = "dry friction", "the device has dry friction", _model_remedy
+    VISCOUS_FRICTION = "viscous friction", "friction grows with speed", _model_remedy
+    ELASTIC = "elastic device", "the device is compliant", _model_remedy
+    RIGID = "rigid device", "the device is rigid", _model_remedy
+    BACKLASH = "backlash", "the device has backlash", _model_remedy
+    STRIBECK = "Stribeck friction", _stribeck_text, _NOT_MODELLED
+    BY_POSITION = (
+        "friction by position",
+        lambda d: f"friction depends on the position, by {format_quantity(d['range'], 'N', 3)} over the stroke",
+        _NOT_MODELLED,
+    )
+    ASYMMETRIC = "asymmetric friction", _asymmetric_text, _NOT_MODELLED
+    RIPPLE = (
+        "friction ripple",
+        lambda d: (
+            f"friction varies periodically along the stroke, by {format_quantity(d['size'], 'N', 2)} to either side "
+            f"every {format_quantity(d['pitch'], 'm', 3)}"
+        ),
+        _NOT_MODELLED,
+    )
+    PRESLIDING = (
+        "presliding",
+        lambda d: (
+            f"friction builds up over {format_quantity(d['distance'], 'm', 2)} of travel after each reversal "
+            f"(presliding)"
+        ),
+        _NOT_MODELLED,
+    )
+    QUADRATIC = (
+        "quadratic damping",
+        lambda d: f"a damping grows with the square of the speed, {format_quantity(d['most'], 'N', 2)} at the largest",
+        ("estimate it too, with ", Remedy(Action.FIT_QUADRATIC)),
+    )
+    STIFFENING = (
+        "stiffening shaft",
+        lambda d: (
+            f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by "
+            f"{format_share(abs(d['share']), 2)} at the largest force"
+        ),
+        _NOT_MODELLED,
+    )
+    SECOND_GAP = "second gap", _second_gap_text, _NOT_MODELLED
+    SATURATION = (
+        "saturation",
+        _saturation_text,
+        "reduce the motion, or state the range of the load cell to exclude such samples",
+    )
+    CLOCK_DRIFT = "clock drift", _clock_text, "sample both channels with one clock"
+    CROSS_TALK = (
+        "cross-talk",
+        lambda d: f"the load cell picks up {format_quantity(d['size'], d['unit'], 3)} of the {d['signal']}",
+        "separate the cables of the sensors, and read the load cell without the device",
+    )
+    FRAME = (
+        "frame resonance",
+        lambda d: (
+            f"the frame of the load cell resonates at {format_quantity(d['frequency'], 'Hz', 3)} (damping ratio "
+            f"{format_number(d['ratio'], 2)})"
+        ),
+        "stiffen the frame, or excite well below its resonance",
+    )
+    HIGH_PASSED_FORCE = (
+        "high-pass filtered force",
+        lambda d: (
+            f"the force was high-pass filtered at {_high_pass_text(d)}, as by a piezoelectric load cell or AC coupling"
+        ),
+        "measure static forces too (DC coupling, a longer time constant), or move well above that frequency",
+    )
+    HIGH_PASSED_DISPLACEMENT = (
+        "high-pass filtered displacement",
+        lambda d: (
+            f"the displacement was high-pass filtered at {_high_pass_text(d)}, as by AC coupling or integration of an "
+            f"acceleration"
+        ),
+        "measure the displacement down to standstill, or move well above it",
+    )
+    END_STOP = "end stop", _end_stop_text, "move less, or farther from the end of the stroke"
+    IN_MOTION = (
+        "motion before the record",
+        "the device already moved when the record began, although the table was nearly at rest",
+        "begin the record at rest, or discard its first samples (lead)",
+    )
+    HUM = (
+        "hum",
+        lambda d: (
+            f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at "
+            f"{format_quantity(d['frequency'], 'Hz')}, or at an alias of it such as "
+            f"{format_quantity(d['rate'] - d['frequency'], 'Hz')}"
+        ),
+        "check grounding and shielding, and use an anti-aliasing filter",
+    )
+    CHANGED_DEVICE = (
+        "changed device",
+        _changed_device_text,
+        ("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),
+    )
+    SPIKES = (
+        "spikes",
+        lambda d: f"spikes replace samples at {_places_text(d)}",
+        ("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
+    )
+    HELD = (
+        "held values",
+        lambda d: f"the recorder held values at {_places_text(d)}",
+        ("interpolate those samples, ", Remedy(Action.REPAIR)),
+    )
+    SLOWER = (
+        "channel at a lower rate",
+        lambda d: " and ".join(
+            f"the {role} was measured at one sample in {every} only, and {way} in between"
+            for role, every, way in d["channels"]
+        ),
+        ("record both channels at one rate, or keep the measured samples alone, ", Remedy(Action.REPAIR)),
+    )
+    JOINED = (
+        "joined pieces",
+        lambda d: f"the record is joined from pieces of different runs at {_places_text(d)}",
+        ("fit each piece as a separate record, ", Remedy(Action.TRIM)),
+    )
+    BEYOND_BOUNDS = (
+        "value beyond the bounds",
+        _beyond_bounds_text,
+        "give the value wider bounds in the elements of the model",
     )
 
+    def sentence(self, details: Details) -> str:
+        """The cause in words, for use after a colon."""
+        return self._sentence(details) if callable(self._sentence) else self._sentence
 
-def _always(said: str) -> Callable[[Details], str]:
-    return lambda details: said
-
-
-_SENTENCES: Mapping[Suspect, Callable[[Details], str]] = {
-    Suspect.GAIN: _always("the gain of the load cell is not one"),
-    Suspect.DELAY: _delay_text,
-    Suspect.FILTERED_DISPLACEMENT: lambda d: f"the displacement was low-pass filtered at {_corner_frequency_text(d)}",
-    Suspect.FILTERED_FORCE: _filtered_force_text,
-    Suspect.DRIFT: lambda d: f"the zero of the load cell drifts, by {format_quantity(d['drift'], 'N', 2)}",
-    Suspect.FIXTURE_MASS: lambda d: (
-        f"a fixture mass of {format_quantity(d['mass'], 'kg')} between load cell and device"
-    ),
-    Suspect.OFFSET: _offset_text,
-    Suspect.LOST_SAMPLES: _dropped_samples_text,
-    Suspect.DRY_FRICTION: _always("the device has dry friction"),
-    Suspect.VISCOUS_FRICTION: _always("friction grows with speed"),
-    Suspect.ELASTIC: _always("the device is compliant"),
-    Suspect.RIGID: _always("the device is rigid"),
-    Suspect.BACKLASH: _always("the device has backlash"),
-    Suspect.STRIBECK: _stribeck_text,
-    Suspect.BY_POSITION: lambda d: (
-        f"friction depends on the position, by {format_quantity(d['range'], 'N', 3)} over the stroke"
-    ),
-    Suspect.ASYMMETRIC: _asymmetric_text,
-    Suspect.RIPPLE: lambda d: (
-        f"friction varies periodically along the stroke, by {format_quantity(d['size'], 'N', 2)} to either side every "
-        f"{format_quantity(d['pitch'], 'm', 3)}"
-    ),
-    Suspect.PRESLIDING: lambda d: (
-        f"friction builds up over {format_quantity(d['distance'], 'm', 2)} of travel after each reversal (presliding)"
-    ),
-    Suspect.QUADRATIC: lambda d: (
-        f"a damping grows with the square of the speed, {format_quantity(d['most'], 'N', 2)} at the largest"
-    ),
-    Suspect.STIFFENING: lambda d: (
-        f"the shaft {'stiffens' if d['share'] > 0.0 else 'softens'} under load, by {format_share(abs(d['share']), 2)} "
-        f"at the largest force"
-    ),
-    Suspect.SECOND_GAP: _second_gap_text,
-    Suspect.SATURATION: _saturation_text,
-    Suspect.CLOCK_DRIFT: _clock_text,
-    Suspect.CROSS_TALK: _cross_talk_text,
-    Suspect.FRAME: lambda d: (
-        f"the frame of the load cell resonates at {format_quantity(d['frequency'], 'Hz', 3)} (damping ratio "
-        f"{format_number(d['ratio'], 2)})"
-    ),
-    Suspect.HIGH_PASSED_FORCE: lambda d: (
-        f"the force was high-pass filtered at {_high_pass_text(d)}, as by a piezoelectric load cell or AC coupling"
-    ),
-    Suspect.HIGH_PASSED_DISPLACEMENT: lambda d: (
-        f"the displacement was high-pass filtered at {_high_pass_text(d)}, as by AC coupling or integration of an "
-        f"acceleration"
-    ),
-    Suspect.END_STOP: _end_stop_text,
-    Suspect.IN_MOTION: _always("the device already moved when the record began, although the table was nearly at rest"),
-    Suspect.HUM: _hum_text,
-    Suspect.CHANGED_DEVICE: _changed_device_text,
-    Suspect.SPIKES: lambda d: f"spikes replace samples at {_places_text(d)}",
-    Suspect.HELD: lambda d: f"the recorder held values at {_places_text(d)}",
-    Suspect.SLOWER: _slower_channels_text,
-    Suspect.JOINED: lambda d: f"the record is joined from pieces of different runs at {_places_text(d)}",
-    Suspect.BEYOND_BOUNDS: _beyond_bounds_text,
-}
-
-
-def _model_remedy(details: Details) -> Text:
-    return (f"use a model such as {details['layout']} ({details['model']})",)
-
-
-def _law_remedy(details: Details) -> Text:
-    return ("no model includes this law; use the values under this hypothesis, where available",)
-
-
-def _constant(*text: str | Remedy) -> Callable[[Details], Text]:
-    return lambda details: text
-
-
-_REMEDIES: Mapping[Suspect, Callable[[Details], Text]] = {
-    Suspect.GAIN: _constant(),
-    Suspect.DELAY: _constant("estimate the delay too, with ", Remedy(Action.FIT_DELAY)),
-    Suspect.FILTERED_DISPLACEMENT: _constant("use the unfiltered displacement, or filter the force in the same way"),
-    Suspect.FILTERED_FORCE: _constant(
-        "state the bandwidth of the load cell and its amplifier, ", Remedy(Action.FORCE_BANDWIDTH)
-    ),
-    Suspect.DRIFT: _constant("warm the load cell up, or remove the drift, ", Remedy(Action.DETREND)),
-    Suspect.FIXTURE_MASS: _constant(
-        "weigh the fixture between load cell and device, and state its mass, ", Remedy(Action.FIXTURE_MASS)
-    ),
-    Suspect.OFFSET: _constant("estimate the offset too, with ", Remedy(Action.FIT_OFFSET)),
-    Suspect.LOST_SAMPLES: _constant("read the file with ", Remedy(Action.GAPS, "fill"), ", which interpolates them"),
-    Suspect.DRY_FRICTION: _model_remedy,
-    Suspect.VISCOUS_FRICTION: _model_remedy,
-    Suspect.ELASTIC: _model_remedy,
-    Suspect.RIGID: _model_remedy,
-    Suspect.BACKLASH: _model_remedy,
-    Suspect.STRIBECK: _law_remedy,
-    Suspect.BY_POSITION: _law_remedy,
-    Suspect.ASYMMETRIC: _law_remedy,
-    Suspect.RIPPLE: _law_remedy,
-    Suspect.PRESLIDING: _law_remedy,
-    Suspect.QUADRATIC: _constant("estimate it too, with ", Remedy(Action.FIT_QUADRATIC)),
-    Suspect.STIFFENING: _law_remedy,
-    Suspect.SECOND_GAP: _law_remedy,
-    Suspect.SATURATION: _constant("reduce the motion, or state the range of the load cell to exclude such samples"),
-    Suspect.CLOCK_DRIFT: _constant("sample both channels with one clock"),
-    Suspect.CROSS_TALK: _constant("separate the cables of the sensors, and read the load cell without the device"),
-    Suspect.FRAME: _constant("stiffen the frame, or excite well below its resonance"),
-    Suspect.HIGH_PASSED_FORCE: _constant(
-        "measure static forces too (DC coupling, a longer time constant), or move well above that frequency"
-    ),
-    Suspect.HIGH_PASSED_DISPLACEMENT: _constant("measure the displacement down to standstill, or move well above it"),
-    Suspect.IN_MOTION: _constant("begin the record at rest, or discard its first samples (lead)"),
-    Suspect.END_STOP: _constant("move less, or farther from the end of the stroke"),
-    Suspect.HUM: _constant("check grounding and shielding, and use an anti-aliasing filter"),
-    Suspect.CHANGED_DEVICE: _constant("fit the parts before and after as separate records, ", Remedy(Action.TRIM)),
-    Suspect.SPIKES: _constant("check cables and connectors, or interpolate those samples, ", Remedy(Action.REPAIR)),
-    Suspect.HELD: _constant("interpolate those samples, ", Remedy(Action.REPAIR)),
-    Suspect.SLOWER: _constant(
-        "record both channels at one rate, or keep the measured samples alone, ", Remedy(Action.REPAIR)
-    ),
-    Suspect.JOINED: _constant("fit each piece as a separate record, ", Remedy(Action.TRIM)),
-    Suspect.BEYOND_BOUNDS: _constant("give the value wider bounds in the elements of the model"),
-}
+    def remedy(self, details: Details) -> Text:
+        """The remedy in words."""
+        remedy = self._remedy(details) if callable(self._remedy) else self._remedy
+        return (remedy,) if isinstance(remedy, str) else remedy

@@ -2,78 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from enum import StrEnum
-
 from inerter.formatting import format_alike, format_number, format_quantity, format_share, format_with_interval
-from inerter.records.finding import Finding
+from inerter.records.finding import Finding, FindingKind
 from inerter.records.remedy import Action, Remedy, Text
 
 _FEW = 10.0  # samples in a period of a motion, below which it may be interpolated less exactly than it is read
 
 
-class FitFinding(StrEnum):
-    """The kinds of findings in an identification."""
-
-    # unreliable estimates
-    UNPREDICTABLE = "unpredictable"
-    SUSPECTED = "suspected"
-    MISFIT = "misfit"
-    SATURATED = "saturated"
-    # notes on the estimates
-    FORCE_REVERSED = "force-reversed"
-    OFFSET = "offset"
-    MOVING_MASS = "moving-mass"
-    INCLUDED = "included"
-    # recommended experiments
-    FASTER_REVERSALS = "faster-reversals"
-    BELOW_RESOLUTION = "below-resolution"
-    SLOW_COSINE = "slow-cosine"
-    LARGER_ACCELERATIONS = "larger-accelerations"
-    HIGHER_FREQUENCIES = "higher-frequencies"
-    BREAK_AWAY = "break-away"
-    NARROWER = "narrower"
-    CALIBRATE = "calibrate"
-    # the choice between models
-    BEST = "best"
-    FEWEST_UNKNOWNS = "fewest-unknowns"
-    NOT_REACHED = "not-reached"
-    FAILED = "failed"
-    # the staged protocol
-    FRICTION_LEVEL = "friction-level"
-    FRICTION_LAW = "friction-law"
-    OTHER_FRICTION = "other-friction"
-    GIVEN_INERTANCE = "given-inertance"
-    SATURATED_CHECK = "saturated-check"
-    RESPONSE = "response"
-
-    def text(self, finding: Finding) -> Text:
-        """The parts of the sentence of such a finding."""
-        return _TEXTS[self](finding)
-
-
-def _unpredictable_text(f: Finding) -> Text:
-    return (
-        f"the force is too sensitive to encoder noise ({format_number(f.numbers['changed'], 3)} % change) to identify "
-        f"any parameter; record a motion with less rattling",
-    )
-
-
-def _possible_cause_text(f: Finding) -> Text:
-    return (f.numbers["likeliest"].sentence,)
-
-
-def _misfit_text(f: Finding) -> Text:
+def _misfit_text(f: Finding) -> str:
     n = f.numbers
     times = f"the residual is {format_number(n['times'], 2)} times the sensor noise"
     explained = n["explained"]
     share = "" if explained is None else f", and the variance explained is only {format_number(explained, 3)} %"
     if n["likeliest"] is None:
         where = "" if n["where"] is None else f", but {n['where'].sentence}"
-        return (f"{times}{share}; no tested cause accounts for it{where}. {_trial_text(f)}",)
+        return f"{times}{share}; no tested cause accounts for it{where}. {_trial_text(f)}"
     others = ", or ".join(e.sentence for e in n["as_good"])
     other = f"; equally likely: {others}" if others else ""
-    return (f"{times}{share}; most likely cause: {n['likeliest'].sentence}{other}",)
+    return f"{times}{share}; most likely cause: {n['likeliest'].sentence}{other}"
 
 
 def _trial_text(f: Finding) -> str:
@@ -89,28 +35,16 @@ def _trial_text(f: Finding) -> str:
     )
 
 
-def _saturation_text(f: Finding) -> Text:
+def _saturation_text(f: Finding) -> str:
     share = format_share(f.numbers["share"], 2)
-    return (f"the load cell was saturated in {share} of the samples; reduce the motion",)
+    return f"the load cell was saturated in {share} of the samples; reduce the motion"
 
 
-def _reversed_force_text(f: Finding) -> Text:
-    return (f"{f.about}: force positive in compression; reversed.",)
-
-
-def _offset_text(f: Finding) -> Text:
+def _offset_text(f: Finding) -> str:
     size = format_quantity(f.numbers["offset"], "N", 3)
     return (
         f"{f.about}: the offset of {size} may be an offset of the load cell or asymmetric friction; in that case the "
-        f"identified friction is the mean of both directions.",
-    )
-
-
-def _moving_mass_text(f: Finding) -> Text:
-    return (
-        f"{f.about} includes the fixture mass between load cell and device, which cannot be separated from the "
-        f"inertance. Weigh it and pass ",
-        *(Remedy(Action.FIXTURE_MASS), "."),
+        f"identified friction is the mean of both directions."
     )
 
 
@@ -144,47 +78,29 @@ def _force_margin_text(f: Finding) -> str:
     return "" if limit is None else f", up to the {format_quantity(limit, 'N')} of the load cell"
 
 
-def _faster_reversals_text(f: Finding) -> Text:
+def _faster_reversals_text(f: Finding) -> str:
     n = f.numbers
     return (
         f"{f.about}: a faster motion with frequent force reversals (present motion: up to "
         f"{format_quantity(n['fastest'], 'Hz', 3)} and {format_quantity(n['peak'], 'N', 3)}{_force_margin_text(f)}), "
-        f"sampled so that crossing {format_quantity(n['width'], 'm')} takes several samples.",
+        f"sampled so that crossing {format_quantity(n['width'], 'm')} takes several samples."
     )
 
 
-def _below_resolution_text(f: Finding) -> Text:
-    return (
-        f"{f.about}: the whole backlash is below {format_quantity(f.numbers['width'], 'm')}, less than a step of the "
-        f"displacement ({format_quantity(f.numbers['step'], 'm', 3)}), and may be taken as zero.",
-    )
-
-
-def _slow_cosine_text(f: Finding) -> Text:
-    return (f"{f.about}: a slow cosine, 0.1 Hz and {format_quantity(f.numbers['travel'], 'm')}, without the flywheel.",)
-
-
-def _larger_accelerations_text(f: Finding) -> Text:
+def _larger_accelerations_text(f: Finding) -> str:
     wider = format_quantity(f.numbers["travel"], "m")
-    return (f"{f.about}: larger accelerations: {wider} at the same frequency, or twice the frequency.",)
+    return f"{f.about}: larger accelerations: {wider} at the same frequency, or twice the frequency."
 
 
-def _higher_frequencies_text(f: Finding) -> Text:
-    return (
-        f"{f.about}: a multisine or sweep of small amplitude up to twice the present "
-        f"{format_quantity(f.numbers['fastest'], 'Hz', 3)} or more{_force_margin_text(f)}.",
-    )
-
-
-def _break_away_text(f: Finding) -> Text:
+def _break_away_text(f: Finding) -> str:
     held = format_quantity(f.numbers["held"], "N", 3)
     return (
         f"{f.about}: a larger or faster motion, with a force above the {held} at which the friction did not "
-        f"slip{_force_margin_text(f)}.",
+        f"slip{_force_margin_text(f)}."
     )
 
 
-def _narrower_interval_text(f: Finding) -> Text:
+def _narrower_interval_text(f: Finding) -> str:
     n = f.numbers
     changes = [
         f"{format_number(n['larger'])} times the amplitude" if n["larger"] != 1.0 else "",
@@ -195,7 +111,7 @@ def _narrower_interval_text(f: Finding) -> Text:
     return (
         f"{f.about}: the same motion, {', '.join(filter(None, changes))} (amplitude {amplitude}, up to "
         f"{format_quantity(n['highest'], 'Hz', 3)}, {duration}): expected interval width {_width(n['expected'], f)} "
-        f"instead of {_width(n['width'], f)}.",
+        f"instead of {_width(n['width'], f)}."
     )
 
 
@@ -204,12 +120,12 @@ def _width(width: float, f: Finding) -> str:
     return f"{format_quantity(width, f.numbers['unit'], 2)}{share}"
 
 
-def _calibrate_text(f: Finding) -> Text:
+def _calibrate_text(f: Finding) -> str:
     n = f.numbers
     fixed, width = format_alike([n["fixed"], n["width"]], n["unit"], 2)
     return (
         f"{f.about}: a better calibration of the sensors: their scales alone cause {fixed} of the interval width of "
-        f"{width}, which no other motion can reduce.",
+        f"{width}, which no other motion can reduce."
     )
 
 
@@ -228,84 +144,116 @@ def _unknowns_text(f: Finding) -> str:
     return "one unknown" if many == 1 else f"{many} unknowns"
 
 
-def _best_candidate_text(f: Finding) -> Text:
-    return (f"{f.about}: best prediction of the validation data, with {_unknowns_text(f)}.{_next_candidate_text(f)}",)
-
-
-def _fewest_unknowns_text(f: Finding) -> Text:
+def _fewest_unknowns_text(f: Finding) -> str:
     n = f.numbers
     return (
         f"{f.about}: with {_unknowns_text(f)}, prediction of the validation data as good as {n['best']} with "
-        f"{n['best_unknowns']} (loss {format_share(n['behind'], 2)} higher).{_next_candidate_text(f)}",
+        f"{n['best_unknowns']} (loss {format_share(n['behind'], 2)} higher).{_next_candidate_text(f)}"
     )
 
 
-def _not_reached_text(f: Finding) -> Text:
-    return (
-        f"{f.about}: not converged: the loss exceeds that of {f.numbers['other']}, which has a subset of its elements "
-        f"or equivalent ones. Increase the number of starts.",
-    )
-
-
-def _failed_candidate_text(f: Finding) -> Text:
-    return (f"{f.about}: cannot be fitted. ", *f.numbers["error"])
-
-
-def _friction_level_text(f: Finding) -> Text:
+def _friction_level_text(f: Finding) -> str:
     level, interval = format_with_interval(f.numbers["level"], f.numbers["lower"], f.numbers["upper"], "N")
-    return (f"Friction {level} ({interval}) from the test without flywheel.",)
+    return f"Friction {level} ({interval}) from the test without flywheel."
 
 
-def _other_friction_text(f: Finding) -> Text:
-    return (
-        f"The faster test is consistent only with a different friction force, at the end of its interval: "
-        f"{format_quantity(f.numbers['best'], 'N')}. The friction may depend on speed or on the load of the flywheel.",
-    )
-
-
-def _given_inertance_text(f: Finding) -> Text:
-    return (f"The inertance was given: {format_quantity(f.numbers['inertance'], 'kg')}.",)
-
-
-def _saturated_check_text(f: Finding) -> Text:
-    return (
-        f"The load cell was saturated in {format_share(f.numbers['share'], 2)} of the validation record, which no "
-        f"model includes. Reduce the motion.",
-    )
-
-
-def _response_text(f: Finding) -> Text:
+def _response_text(f: Finding) -> str:
     differ, octaves = f.numbers["differ"], f.numbers["octaves"]
     if octaves and not differ:
-        return (f"The validation record agrees in all {octaves} octaves.",)
-    return (f"The validation record differs in {differ} of {octaves} octaves.",)
+        return f"The validation record agrees in all {octaves} octaves."
+    return f"The validation record differs in {differ} of {octaves} octaves."
 
 
-_TEXTS: Mapping[FitFinding, Callable[[Finding], Text]] = {
-    FitFinding.UNPREDICTABLE: _unpredictable_text,
-    FitFinding.SUSPECTED: _possible_cause_text,
-    FitFinding.MISFIT: _misfit_text,
-    FitFinding.SATURATED: _saturation_text,
-    FitFinding.FORCE_REVERSED: _reversed_force_text,
-    FitFinding.OFFSET: _offset_text,
-    FitFinding.MOVING_MASS: _moving_mass_text,
-    FitFinding.INCLUDED: _included_uncertainty_text,
-    FitFinding.FASTER_REVERSALS: _faster_reversals_text,
-    FitFinding.BELOW_RESOLUTION: _below_resolution_text,
-    FitFinding.SLOW_COSINE: _slow_cosine_text,
-    FitFinding.LARGER_ACCELERATIONS: _larger_accelerations_text,
-    FitFinding.HIGHER_FREQUENCIES: _higher_frequencies_text,
-    FitFinding.BREAK_AWAY: _break_away_text,
-    FitFinding.NARROWER: _narrower_interval_text,
-    FitFinding.CALIBRATE: _calibrate_text,
-    FitFinding.BEST: _best_candidate_text,
-    FitFinding.FEWEST_UNKNOWNS: _fewest_unknowns_text,
-    FitFinding.NOT_REACHED: _not_reached_text,
-    FitFinding.FAILED: _failed_candidate_text,
-    FitFinding.FRICTION_LEVEL: _friction_level_text,
-    FitFinding.FRICTION_LAW: lambda f: (f.numbers["law"].sentence,),
-    FitFinding.OTHER_FRICTION: _other_friction_text,
-    FitFinding.GIVEN_INERTANCE: _given_inertance_text,
-    FitFinding.SATURATED_CHECK: _saturated_check_text,
-    FitFinding.RESPONSE: _response_text,
-}
+class FitFinding(FindingKind):
+    """The kinds of findings in an identification."""
+
+    # unreliable estimates
+    UNPREDICTABLE = (
+        "unpredictable",
+        lambda f: (
+            f"the force is too sensitive to encoder noise ({format_number(f.numbers['changed'], 3)} % change) to "
+            f"identify any parameter; record a motion with less rattling"
+        ),
+    )
+    SUSPECTED = "suspected", lambda f: f.numbers["likeliest"].sentence
+    MISFIT = "misfit", _misfit_text
+    SATURATED = "saturated", _saturation_text
+    # notes on the estimates
+    FORCE_REVERSED = "force-reversed", lambda f: f"{f.about}: force positive in compression; reversed."
+    OFFSET = "offset", _offset_text
+    MOVING_MASS = (
+        "moving-mass",
+        lambda f: (
+            (
+                f"{f.about} includes the fixture mass between load cell and device, which cannot be separated from the "
+                f"inertance. Weigh it and pass ",
+                *(Remedy(Action.FIXTURE_MASS), "."),
+            )
+        ),
+    )
+    INCLUDED = "included", _included_uncertainty_text
+    # recommended experiments
+    FASTER_REVERSALS = "faster-reversals", _faster_reversals_text
+    BELOW_RESOLUTION = (
+        "below-resolution",
+        lambda f: (
+            f"{f.about}: the whole backlash is below {format_quantity(f.numbers['width'], 'm')}, less than a step of "
+            f"the displacement ({format_quantity(f.numbers['step'], 'm', 3)}), and may be taken as zero."
+        ),
+    )
+    SLOW_COSINE = (
+        "slow-cosine",
+        lambda f: (
+            f"{f.about}: a slow cosine, 0.1 Hz and {format_quantity(f.numbers['travel'], 'm')}, without the flywheel."
+        ),
+    )
+    LARGER_ACCELERATIONS = "larger-accelerations", _larger_accelerations_text
+    HIGHER_FREQUENCIES = (
+        "higher-frequencies",
+        lambda f: (
+            f"{f.about}: a multisine or sweep of small amplitude up to twice the present "
+            f"{format_quantity(f.numbers['fastest'], 'Hz', 3)} or more{_force_margin_text(f)}."
+        ),
+    )
+    BREAK_AWAY = "break-away", _break_away_text
+    NARROWER = "narrower", _narrower_interval_text
+    CALIBRATE = "calibrate", _calibrate_text
+    # the choice between models
+    BEST = (
+        "best",
+        lambda f: (
+            f"{f.about}: best prediction of the validation data, with {_unknowns_text(f)}.{_next_candidate_text(f)}"
+        ),
+    )
+    FEWEST_UNKNOWNS = "fewest-unknowns", _fewest_unknowns_text
+    NOT_REACHED = (
+        "not-reached",
+        lambda f: (
+            f"{f.about}: not converged: the loss exceeds that of {f.numbers['other']}, which has a subset of its "
+            f"elements or equivalent ones. Increase the number of starts."
+        ),
+    )
+    FAILED = "failed", lambda f: (f"{f.about}: cannot be fitted. ", *f.numbers["error"])
+    # the staged protocol
+    FRICTION_LEVEL = "friction-level", _friction_level_text
+    FRICTION_LAW = "friction-law", lambda f: f.numbers["law"].sentence
+    OTHER_FRICTION = (
+        "other-friction",
+        lambda f: (
+            f"The faster test is consistent only with a different friction force, at the end of its interval: "
+            f"{format_quantity(f.numbers['best'], 'N')}. The friction may depend on speed or on the load of the "
+            f"flywheel."
+        ),
+    )
+    GIVEN_INERTANCE = (
+        "given-inertance",
+        lambda f: f"The inertance was given: {format_quantity(f.numbers['inertance'], 'kg')}.",
+    )
+    SATURATED_CHECK = (
+        "saturated-check",
+        lambda f: (
+            f"The load cell was saturated in {format_share(f.numbers['share'], 2)} of the validation record, which no "
+            f"model includes. Reduce the motion."
+        ),
+    )
+    RESPONSE = "response", _response_text

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from enum import StrEnum
-
 from inerter.formatting import format_alike, format_number, format_quantity, format_share
-from inerter.records.finding import Finding
-from inerter.records.remedy import Text
+from inerter.records.finding import Finding, FindingKind
 
 TRAVEL, FRICTION = "travel since the last reversal", "position, against the motion"
 UNITS = {  # of what the residual may depend on
@@ -28,28 +24,6 @@ COEFFICIENTS = {  # of the residual on a signal: its physical meaning and unit
     "force": ("a gain of the load cell", ""),
     "force rate": ("a delay of the force", "s"),
 }
-
-
-class MisfitPattern(StrEnum):
-    """The kinds of patterns in a residual."""
-
-    BEGINS = "begins"
-    ENDS = "ends"
-    LEVEL_STEP = "level-step"
-    GROWS = "grows"
-    COEFFICIENT_STEP = "coefficient-step"
-    COEFFICIENT_TREND = "coefficient-trend"
-    CHANNEL = "channel"
-    MEAN = "mean"
-    SPREAD = "spread"
-    POSITIONS = "positions"
-    LINE = "line"
-    BAND = "band"
-    INSTANTS = "instants"
-
-    def text(self, finding: Finding) -> Text:
-        """The parts of the sentence of such a pattern, for use after a colon."""
-        return (_TEXTS[self](finding),)
 
 
 def _times_text(f: Finding) -> str:
@@ -157,20 +131,22 @@ def _instants_text(f: Finding) -> str:
     return f"the misfit is concentrated at {where}, up to {size} for {lasting}: at {times}{more} s{leaps}"
 
 
-_TEXTS: Mapping[MisfitPattern, Callable[[Finding], str]] = {
-    MisfitPattern.BEGINS: lambda f: f"the misfit begins at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}",
-    MisfitPattern.ENDS: lambda f: f"the misfit ends at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}",
-    MisfitPattern.LEVEL_STEP: lambda f: (
-        f"the misfit changes at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}"
-    ),
-    MisfitPattern.GROWS: _grows_text,
-    MisfitPattern.COEFFICIENT_STEP: _coefficient_step_text,
-    MisfitPattern.COEFFICIENT_TREND: _coefficient_trend_text,
-    MisfitPattern.CHANNEL: _channel_text,
-    MisfitPattern.MEAN: _mean_text,
-    MisfitPattern.SPREAD: _spread_text,
-    MisfitPattern.POSITIONS: _positions_text,
-    MisfitPattern.LINE: _line_text,
-    MisfitPattern.BAND: _band_text,
-    MisfitPattern.INSTANTS: _instants_text,
-}
+class MisfitPattern(FindingKind):
+    """The kinds of patterns in a residual; their sentences are for use after a colon."""
+
+    BEGINS = "begins", lambda f: f"the misfit begins at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}"
+    ENDS = "ends", lambda f: f"the misfit ends at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}"
+    LEVEL_STEP = (
+        "level-step",
+        lambda f: f"the misfit changes at {format_quantity(f.numbers['time'], 's')}: {_times_text(f)}",
+    )
+    GROWS = "grows", _grows_text
+    COEFFICIENT_STEP = "coefficient-step", _coefficient_step_text
+    COEFFICIENT_TREND = "coefficient-trend", _coefficient_trend_text
+    CHANNEL = "channel", _channel_text
+    MEAN = "mean", _mean_text
+    SPREAD = "spread", _spread_text
+    POSITIONS = "positions", _positions_text
+    LINE = "line", _line_text
+    BAND = "band", _band_text
+    INSTANTS = "instants", _instants_text

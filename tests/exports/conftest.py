@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from folders import EXAMPLES
 
-from inerter.exports.fmu import platforms
+from inerter.exports.kinds.fmu import platforms
 
 
 @pytest.fixture(scope="session")

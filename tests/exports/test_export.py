@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import errno
+import sys
 from pathlib import Path
+from runpy import run_path
 from typing import ClassVar
 
 import numpy as np
@@ -12,6 +14,7 @@ from campaigns import sampled
 from wang_su import paper_quarter_car
 
 import inerter as it
+from inerter.exports import kinds, registry
 from inerter.exports.registry import EXPORTS
 
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)
@@ -199,3 +202,13 @@ def test_matrices_are_those_of_the_state_space() -> None:
     made, system = it.export(CAR, "scipy"), it.state_space(CAR)
     for name in "ABCD":
         assert np.array_equal(getattr(made, name), getattr(system, name))
+
+
+def test_a_module_among_the_kinds_is_a_kind_of_export(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kind = 'ExportKind("one-line", "one line of text", (".txt",), lambda request, suffix: request.title)'
+    (tmp_path / "one_line.py").write_text(f"from inerter.exports.kind import ExportKind\nONE_LINE = {kind}\n")
+    monkeypatch.setattr(kinds, "__path__", [*kinds.__path__, str(tmp_path)])
+    found = run_path(registry.__file__)["EXPORTS"]
+    monkeypatch.delitem(sys.modules, "inerter.exports.kinds.one_line")
+    assert [*found] == [*EXPORTS, "one-line"]
+    assert found["one-line"].contents(it.ExportSpec(REAL, "one-line", title="A line"), ".txt") == "A line"

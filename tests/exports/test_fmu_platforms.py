@@ -13,7 +13,7 @@ from campaigns import sampled
 from wang_su import paper_quarter_car
 
 import inerter as it
-from inerter.exports.fmu.platforms import PLATFORMS
+from inerter.exports.kinds.fmu.platforms import PLATFORMS
 
 pytest.importorskip("fmpy", reason='FMPy has the headers of FMI: pip install "inerter[test]".')
 from fmu_functions import declared

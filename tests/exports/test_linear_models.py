@@ -17,7 +17,7 @@ from nodal import Nodal
 from wang_su import paper_quarter_car
 
 import inerter as it
-from inerter.exports.matlab import matlab_file, matlab_script
+from inerter.exports.kinds.matlab import matlab_file, matlab_script
 
 OCTAVE = shutil.which("octave")
 K, C, B = it.Spring(120e3), it.Damper(7544.2), it.Inerter(366.52)

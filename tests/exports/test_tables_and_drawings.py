@@ -17,8 +17,8 @@ from designs import ALWAYS, design
 from wang_su import paper_quarter_car
 
 import inerter as it
+from inerter.exports.kinds.tables import responses_of
 from inerter.exports.request import ExportSpec
-from inerter.exports.tables import responses_of
 from inerter.files.study.cases import cases
 from inerter.files.study.loading import load_study
 from inerter.files.study.responses import responses

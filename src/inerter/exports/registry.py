@@ -1,21 +1,18 @@
-"""Registry of the kinds of exports, by key."""
+"""Registry of the kinds of exports, by key: those that the modules of `kinds` state, in the order of their names."""
 
 from __future__ import annotations
 
-from inerter.exports.drawings import LATEX, PDF, SVG
-from inerter.exports.fmu.archive import FMU, FMU3
+from importlib import import_module
+from pkgutil import iter_modules
+
+from inerter.exports import kinds
 from inerter.exports.kind import ExportKind
-from inerter.exports.matlab import MATLAB
-from inerter.exports.modelica import MODELICA
-from inerter.exports.python_objects import CONTROL, SCIPY
-from inerter.exports.simulation_file import SIMULATION
-from inerter.exports.spice import SPICE
-from inerter.exports.tables import CSV, NETCDF
 from inerter.registry import Registry
 
+_MODULES = [import_module(f"{kinds.__name__}.{found.name}") for found in iter_modules(kinds.__path__)]
 EXPORTS: Registry[ExportKind] = Registry(
     "kind of export",
     "key",
     ("description", "suffixes", "make"),
-    (CONTROL, SCIPY, MATLAB, CSV, NETCDF, MODELICA, FMU, FMU3, SPICE, SVG, PDF, LATEX, SIMULATION),
+    tuple(kind for module in _MODULES for kind in vars(module).values() if isinstance(kind, ExportKind)),
 )

@@ -11,9 +11,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.exports.fmu.cut_mechanism import CutMechanism, cut_mechanism
-from inerter.exports.fmu.equations import Equations, FmuParameter, mass_name
-from inerter.exports.fmu.switching import (
+from inerter.exports.kinds.fmu.cut_mechanism import CutMechanism, cut_mechanism
+from inerter.exports.kinds.fmu.equations import Equations, FmuParameter, mass_name
+from inerter.exports.kinds.fmu.switching import (
     PrescribedMotion,
     SwitchingSystem,
     reaction_quantities,

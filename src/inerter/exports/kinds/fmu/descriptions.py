@@ -9,8 +9,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from inerter.exports.fmu.equations import FmuParameter
-from inerter.exports.fmu.switching import SwitchingSystem
+from inerter.exports.kinds.fmu.equations import FmuParameter
+from inerter.exports.kinds.fmu.switching import SwitchingSystem
 from inerter.exports.named_system import NamedQuantity
 
 _ORDERS = ("", "_rate", "_rate2", "_rate3")  # of the derivatives of an input

@@ -11,7 +11,7 @@ from itertools import count
 
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
-from inerter.exports.matlab import exact
+from inerter.exports.kinds.matlab import exact
 from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import LinearRole

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from inerter.errors import ExportError
 from inerter.exports.kind import ExportKind
-from inerter.exports.matlab import exact
+from inerter.exports.kinds.matlab import exact
 from inerter.exports.refusals import delay_notes
 from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Bridge, Element, Network, Parallel, Series

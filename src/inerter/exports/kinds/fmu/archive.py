@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError
-from inerter.exports.fmu.arrivals import on_one_road
-from inerter.exports.fmu.descriptions import FmuModel, build_description, description_2, description_3
-from inerter.exports.fmu.equations import equations_of
-from inerter.exports.fmu.platforms import libraries
-from inerter.exports.fmu.strut import port_masses, strut_system
-from inerter.exports.fmu.switching import SwitchingSystem, switching_system, without_reactions
 from inerter.exports.kind import OPTIONS, ExportKind
-from inerter.exports.modelica import package_name
+from inerter.exports.kinds.fmu.arrivals import on_one_road
+from inerter.exports.kinds.fmu.descriptions import FmuModel, build_description, description_2, description_3
+from inerter.exports.kinds.fmu.equations import equations_of
+from inerter.exports.kinds.fmu.platforms import libraries
+from inerter.exports.kinds.fmu.strut import port_masses, strut_system
+from inerter.exports.kinds.fmu.switching import SwitchingSystem, switching_system, without_reactions
+from inerter.exports.kinds.modelica import package_name
 from inerter.exports.named_system import NamedQuantity
 from inerter.exports.request import ExportSpec
 from inerter.networks.elements import Network
@@ -99,7 +99,7 @@ def fmu_archive(switches: SwitchingSystem, title: str, version: FmiVersion, plat
     model = replace(model, token=hashlib.sha256(told.encode()).hexdigest()[:32])
     sources = {"model.h": f'#define TOKEN "{model.token}"\n{header}'}
     for file in ("engine.c", "instance.c", version.source):
-        sources[file] = (files("inerter.exports.fmu") / file).read_text(encoding="utf-8")
+        sources[file] = (files("inerter.exports.kinds.fmu") / file).read_text(encoding="utf-8")
     entries: dict[str, str | bytes] = {f"sources/{file}": text for file, text in sources.items()}
     if version is FMI_2:
         entries["modelDescription.xml"] = description_2(model, version.source)

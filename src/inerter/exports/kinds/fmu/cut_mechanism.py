@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError, MechanismError
-from inerter.exports.fmu.equations import Equations, FmuParameter, equations_of
+from inerter.exports.kinds.fmu.equations import Equations, FmuParameter, equations_of
 from inerter.networks.elements import Element, Network
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.networks.transform import map_elements

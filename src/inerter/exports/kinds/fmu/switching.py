@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError
-from inerter.exports.fmu.cut_mechanism import CutMechanism, Rows, cut_mechanism
-from inerter.exports.fmu.equations import Equations, FmuParameter
+from inerter.exports.kinds.fmu.cut_mechanism import CutMechanism, Rows, cut_mechanism
+from inerter.exports.kinds.fmu.equations import Equations, FmuParameter
 from inerter.exports.named_system import NamedQuantity, NamedSystem, Quantities
 from inerter.exports.refusals import delay_notes, refuse_moving_ground
 from inerter.systems.outputs import input_unit, main_outputs, outputs, velocity_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from inerter.errors import ExportError
-from inerter.exports.fmu.equations import FmuParameter
-from inerter.exports.fmu.switching import SwitchingSystem
+from inerter.exports.kinds.fmu.equations import FmuParameter
+from inerter.exports.kinds.fmu.switching import SwitchingSystem
 from inerter.exports.refusals import delay_notes
 from inerter.formatting import format_quantity, format_range
 from inerter.systems.outputs import velocity_of

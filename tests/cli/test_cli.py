@@ -63,7 +63,7 @@ def test_wrong_requests(arguments: list[str], words: str, capsys: pytest.Capture
     [
         (["run"], "STUDY is missing."),
         (["identify", "--model", "ideal"], "RECORDS is missing."),
-        (["plot", "a.toml"], "--kind is missing."),
+        (["rig", "a.toml"], "--output is missing."),
         (["run", "a.toml", "-o"], "-o is given without its value."),
         (["run", "check", "a b.toml"], 'Unexpected argument: "a b.toml".'),
     ],

@@ -34,6 +34,7 @@ from inerter.report.study_contents import StudyContents
 from inerter.report.tables import tables_of, trade_off_tables
 from inerter.report.text import WIDTH
 from inerter.report.verdicts import verdict_sentences
+from inerter.roads.spectrum import N0, RoadSpectrum
 from inerter.signals.road import ROAD_CLASSES
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
@@ -370,7 +371,9 @@ def test_notes_are_sentences_and_their_numbers_are_printed(study, tmp_path):
 
 @pytest.mark.parametrize("roughness", [2.25325150879e-07, 1.2345678e-6])
 def test_a_roughness_that_was_measured_has_no_more_digits_than_it_bears(study, roughness):
-    line = MeasuredLine(Path("road.csv"), "0" * 64, "", roughness, 1e-4, 2.0, 1.2, 60, 0.01, 2.8)
+    none = np.zeros(0)
+    spectrum = RoadSpectrum(none, none, 1e-4, 2.0, 2.0 * roughness / N0**2, 1.2, 0.01, 2.8, 60)
+    line = MeasuredLine(Path("road.csv"), "0" * 64, "", spectrum)
     measured = dict(vehicle_rows(replace(study, road=replace(study.road, roughness=roughness), line=line)))
     digits = re.match(r"[\d.]+", measured["Road roughness"])
     assert digits

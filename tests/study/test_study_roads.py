@@ -241,8 +241,8 @@ def test_a_waviness_that_is_not_two_is_told_first(load, tmp_path, waviness, belo
     write_profile(tmp_path / "road.csv", heights(3, waviness, class_of=16e-6))
     study = load('profile = "road.csv"\nsampling = "filtered"')
     (note,) = study_notes(study)[:1]
-    assert f"has a waviness of {format_number(study.line.waviness, 3)}" in note
-    assert study.line.waviness == pytest.approx(waviness, abs=0.1)
+    assert f"has a waviness of {format_number(study.line.spectrum.waviness, 3)}" in note
+    assert study.line.spectrum.waviness == pytest.approx(waviness, abs=0.1)
     warnings = list(study.line.warnings)
     assert len(warnings) == bool(below)
     if below:  # where both lines are alike, the roughness is that of the profile
@@ -265,7 +265,7 @@ def test_a_line_through_few_bands_is_told_first(load, tmp_path):
     write_profile(tmp_path / "road.csv", heights(4, points=20, spacing=1.0), spacing=1.0)
     study = load('profile = "road.csv"')
     told = list(study.line.warnings)
-    assert f"no more than {study.line.bands} bands of road.csv" in told[-1]
+    assert f"no more than {study.line.spectrum.bands} bands of road.csv" in told[-1]
     assert told == [one for one in told if one.startswith("Beware")]
 
 
@@ -465,7 +465,7 @@ def test_what_is_advised_about_the_columns_of_a_profile_can_be_done(header: str,
     (tmp_path / "road.csv").write_text("\n".join([renamed, *lines]), encoding="utf-8")
     path.write_text(text_of('profile = "road.csv"'), encoding="utf-8")
     assert by_keys is not None
-    assert by_keys.roughness == pytest.approx(load_study(path).line.roughness, rel=1e-12)
+    assert by_keys.roughness == pytest.approx(load_study(path).line.road.roughness, rel=1e-12)
 
 
 BAD_KEYS = {

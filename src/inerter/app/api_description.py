@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable, Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -47,7 +47,7 @@ class Endpoint:
     verb: str
     path: str
     summary: str
-    handler: Callable[..., Awaitable[Any]]
+    handler: Callable[..., Any]  # a coroutine function, or one that is called in a thread
     body: type[BaseModel] | None = None
     media: str = "application/json"
     accepts: str = "application/json"  # where the body has no shape of ours, its type

@@ -25,78 +25,41 @@ from inerter.app.wire import Refusal, decode_json, encode_json
 from inerter.files.common.toml import as_toml
 
 
-async def _about(server: Server, request: Request) -> dict[str, Any]:
-    return {**await asyncio.to_thread(about.about), "kernels": server.warming.to_dict()}
+def _about(server: Server, request: Request) -> dict[str, Any]:
+    return {**about.about(), "kernels": server.warming.to_dict()}
 
 
 async def _ready(server: Server, request: Request) -> Response:
     return as_events(as_event(number, event) async for number, event in server.warming.events())
 
 
-async def _start(server: Server, request: Request) -> dict[str, Any]:
-    return await asyncio.to_thread(server.start.to_dict)
-
-
-async def _start_stamp(server: Server, request: Request) -> dict[str, Any]:
-    return await asyncio.to_thread(server.start.stamp)
-
-
-async def _examples(server: Server, request: Request) -> dict[str, Any]:
-    return await asyncio.to_thread(example_cards)
-
-
-async def _example(server: Server, request: Request) -> dict[str, Any]:
-    found = await asyncio.to_thread(about.examples)
+def _example(server: Server, request: Request) -> dict[str, Any]:
+    found = about.examples()
     name = request.path_params["name"]
     if name not in found:
         raise Refusal(404, f"Unknown example; available: {', '.join(found)}.")
     return to_document(f"{name}.toml", found[name].read_text(encoding="utf-8"))
 
 
-async def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:
+def _read(server: Server, request: Request, body: bodies.ReadStudy) -> dict[str, Any]:
     if (body.text is None) == (body.study is None):
         raise Refusal(400, "Give either the text of a study file or a study document.")
     if body.text is not None:
-        return await asyncio.to_thread(documents.read, body.text, body.name)
+        return documents.read(body.text, body.name)
     study = body.study or {}
-    found = await asyncio.to_thread(documents.problems, study)
-    return {"study": study, "kind": documents.command_of(study), "problems": found}
+    return {"study": study, "kind": documents.command_of(study), "problems": documents.problems(study)}
 
 
 async def _check(server: Server, request: Request, body: bodies.CheckStudy) -> Response:
     return as_json(await server.check(body.study))
 
 
-async def _study_parts(server: Server, request: Request, body: bodies.StudyParts) -> dict[str, Any]:
-    return await asyncio.to_thread(study_parts.parts_of_document, body.study)
-
-
-async def _rename(server: Server, request: Request, body: bodies.RenameElements) -> dict[str, Any]:
-    return await asyncio.to_thread(study_parts.renamed_document, body.study, body.names)
-
-
-async def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:
-    def file_text() -> dict[str, Any]:
-        if not body.designs:
-            return {"text": as_toml(body.study)}
-        study = documents.study_from(body.study)
-        document = with_fixed_values(body.study, study, designs_of(study, body.model_dump()))
-        return {"text": as_toml(document), "study": document}
-
-    return await asyncio.to_thread(file_text)
-
-
-async def _parse(server: Server, request: Request, body: bodies.ParseNetwork) -> dict[str, Any]:
-    return parts.parse_network(body.text, body.elements)
-
-
-async def _quantity(server: Server, request: Request, body: bodies.QuantityBody) -> dict[str, Any]:
-    return await asyncio.to_thread(parts.quantity, body.model_dump())
-
-
-async def _quantities(server: Server, request: Request, body: bodies.Quantities) -> dict[str, Any]:
-    items = [item.model_dump() for item in body.items]
-    return {"items": await asyncio.to_thread(lambda: [parts.quantity(item) for item in items])}
+def _write(server: Server, request: Request, body: bodies.WriteStudy) -> dict[str, Any]:
+    if not body.designs:
+        return {"text": as_toml(body.study)}
+    study = documents.study_from(body.study)
+    document = with_fixed_values(body.study, study, designs_of(study, body.model_dump()))
+    return {"text": as_toml(document), "study": document}
 
 
 async def _panel(server: Server, request: Request, body: bodies.PanelRequest) -> Response:
@@ -207,17 +170,13 @@ async def _export(server: Server, request: Request, body: bodies.DesignExport) -
     return Response(found, media_type="application/octet-stream")
 
 
-async def _openapi(server: Server, request: Request) -> dict[str, Any]:
-    return openapi(ENDPOINTS)
-
-
-ENDPOINTS = (
-    Endpoint("GET", "/api/openapi.json", "This description", _openapi),
+ENDPOINTS: tuple[Endpoint, ...] = (
+    Endpoint("GET", "/api/openapi.json", "This description", lambda server, request: openapi(ENDPOINTS)),
     Endpoint("GET", "/api/about", "Available vehicles, indices, methods, panels and jobs", _about),
     Endpoint("GET", "/api/ready", "Progress of the compilation of kernels", _ready, media="text/event-stream"),
-    Endpoint("GET", "/api/start", "The study of the command line", _start),
-    Endpoint("GET", "/api/start/stamp", "Whether its file has changed", _start_stamp),
-    Endpoint("GET", "/api/examples", "Examples of the package", _examples),
+    Endpoint("GET", "/api/start", "The study of the command line", lambda server, request: server.start.to_dict()),
+    Endpoint("GET", "/api/start/stamp", "Whether its file has changed", lambda server, request: server.start.stamp()),
+    Endpoint("GET", "/api/examples", "Examples of the package", lambda server, request: example_cards()),
     Endpoint("GET", "/api/examples/{name}", "An example", _example),
     Endpoint("POST", "/api/study/read", "The document of a study file, and its problems", _read, bodies.ReadStudy),
     Endpoint(
@@ -227,12 +186,42 @@ ENDPOINTS = (
         _check,
         bodies.CheckStudy,
     ),
-    Endpoint("POST", "/api/study/parts", "Networks, elements and numbers", _study_parts, bodies.StudyParts),
-    Endpoint("POST", "/api/study/rename", "Other names of elements", _rename, bodies.RenameElements),
+    Endpoint(
+        "POST",
+        "/api/study/parts",
+        "Networks, elements and numbers",
+        lambda server, request, body: study_parts.parts_of_document(body.study),
+        bodies.StudyParts,
+    ),
+    Endpoint(
+        "POST",
+        "/api/study/rename",
+        "Other names of elements",
+        lambda server, request, body: study_parts.renamed_document(body.study, body.names),
+        bodies.RenameElements,
+    ),
     Endpoint("POST", "/api/study/write", "A document as a study file", _write, bodies.WriteStudy),
-    Endpoint("POST", "/api/network/parse", "A network as a tree with places", _parse, bodies.ParseNetwork),
-    Endpoint("POST", "/api/quantity", "A quantity read or written", _quantity, bodies.QuantityBody),
-    Endpoint("POST", "/api/quantities", "Several quantities read or written", _quantities, bodies.Quantities),
+    Endpoint(
+        "POST",
+        "/api/network/parse",
+        "A network as a tree with places",
+        lambda server, request, body: parts.parse_network(body.text, body.elements),
+        bodies.ParseNetwork,
+    ),
+    Endpoint(
+        "POST",
+        "/api/quantity",
+        "A quantity read or written",
+        lambda server, request, body: parts.quantity(body.model_dump()),
+        bodies.QuantityBody,
+    ),
+    Endpoint(
+        "POST",
+        "/api/quantities",
+        "Several quantities read or written",
+        lambda server, request, body: {"items": [parts.quantity(one.model_dump()) for one in body.items]},
+        bodies.Quantities,
+    ),
     Endpoint(
         "POST", "/api/panel/{name}", "A fast response; a newer request supersedes it", _panel, bodies.PanelRequest
     ),

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from asyncio import to_thread
 from collections.abc import AsyncIterator, Awaitable, Callable
 from concurrent.futures import Executor
 from contextlib import asynccontextmanager
+from inspect import iscoroutinefunction
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +62,10 @@ def _make_route(server: Server, endpoint: Endpoint) -> Callable[[Request], Await
     async def route(request: Request) -> Response:
         try:
             given = () if endpoint.body is None else (_validate_body(endpoint.body, decode_json(await request.body())),)
-            found = await endpoint.handler(server, request, *given)
+            if iscoroutinefunction(endpoint.handler):
+                found = await endpoint.handler(server, request, *given)
+            else:
+                found = await to_thread(endpoint.handler, server, request, *given)
         except ClientDisconnect:
             return Response(status_code=400)
         except InerterError as error:

@@ -15,7 +15,7 @@ from inerter.exports.kind import ExportKind
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import ExportSpec
 from inerter.files.common.folder import check_single, single
-from inerter.files.common.suggest import nearest
+from inerter.files.common.suggest import missing_kind, nearest
 from inerter.files.study.chosen_design import CHOOSE_ONE, WITHOUT_CONDITIONS, chosen_design
 from inerter.units import quote_value
 
@@ -74,8 +74,7 @@ def _kind(name: str | None) -> ExportKind:
     """The kind of export; raises `ExportError` for none or an unknown one, with those that are written to files."""
     files = {key: kind for key, kind in EXPORTS.items() if kind.is_file}
     if name is None:
-        lines = (f"  {key:<{max(map(len, files))}}  {kind.description}" for key, kind in files.items())
-        raise ExportError("\n".join(["--to is missing; kinds of exports:", *lines]))
+        raise ExportError(missing_kind("--to", "exports", {key: kind.description for key, kind in files.items()}))
     if name in EXPORTS:
         return EXPORTS[name]
     opened = _OPENED_BY.get(name.lower())

@@ -416,12 +416,12 @@ def plot(
     /,
     *,
     kind: Annotated[
-        str,
+        str | None,
         Parameter(
-            help="Of designs: bode, nyquist, poles, step, admittance, network; of a motion: trajectory, loop; "
-            "of results: improvement, front, sweep, map."
+            help="Kind of plot: of designs, such as bode; of a motion, such as trajectory; of results, such as front. "
+            "Without it, all kinds are listed."
         ),
-    ],
+    ] = None,
     layout: Annotated[
         tuple[str, ...], Parameter(negative="", show_default=False, help="Layout; repeatable. Default: all.")
     ] = (),

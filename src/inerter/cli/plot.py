@@ -14,7 +14,7 @@ from inerter.errors import StudyError
 from inerter.figures.plots.kinds import PLOTS, DesignsToPlot, MotionToPlot, PlotKind, PlotSource, ResultsToPlot
 from inerter.figures.style import style_context
 from inerter.files.common.folder import check_single, single
-from inerter.files.common.suggest import some
+from inerter.files.common.suggest import missing_kind, some
 from inerter.files.simulation import running as simulations
 from inerter.files.simulation.loading import load_simulation
 from inerter.files.study.chosen_design import CHOOSE_ONE, WITHOUT_CONDITIONS, chosen_designs, load_results
@@ -51,12 +51,14 @@ _USED: Mapping[PlotSource, tuple[str, ...]] = {
 }
 
 
-def plot(source: Path, kind: str, options: PlotOptions, output: Path | None, *, force: bool) -> None:
+def plot(source: Path, kind: str | None, options: PlotOptions, output: Path | None, *, force: bool) -> None:
     """Plot designs, a motion or results into a file.
 
-    Raises `StudyError` for an unknown kind or suffix, for an option that the kind does not use, and for a source that
-    has nothing of the kind; what the plot raises.
+    Raises `StudyError` for a missing or unknown kind, for an unknown suffix, for an option that the kind does not use,
+    and for a source that has nothing of the kind; what the plot raises.
     """
+    if kind is None:
+        raise StudyError(missing_kind("--kind", "plots", {key: row.description for key, row in PLOTS.items()}))
     row = PLOTS[kind]
     options.check(row)
     stem = source.stem if source.is_file() else source.resolve().name

@@ -27,11 +27,9 @@ class Pulse:
         self,
         words: Callable[[ProgressStep], str],
         take: Callable[[ProgressStep], object] | None = None,
-        begun: float | None = None,
     ) -> None:
         self.words, self.take = words, take
-        self.begun = time.monotonic() if begun is None else begun
-        self.printed = time.monotonic()
+        self.begun = self.printed = time.monotonic()
         self.level = _open
 
     def __call__(self, step: ProgressStep) -> None:

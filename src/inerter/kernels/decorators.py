@@ -13,7 +13,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 
 from inerter.errors import InerterError
-from inerter.work.progress import told_if_long
+from inerter.work.progress import report_if_long
 
 F = TypeVar("F", bound=Callable[..., Any])
 Signature = str | Callable[[Any], Any] | None  # in the compiler's words, or made from its module of types
@@ -101,7 +101,7 @@ class Kernel:
         if self._compiled is None and compiler_mode() == NONE:
             self._compiled = _without_warnings(self.function)
         if self._compiled is None:
-            with told_if_long(f"compiling a numerical kernel ({self.title})"):
+            with report_if_long(f"compiling a numerical kernel ({self.title})"):
                 from inerter.kernels.compiler import compile_function  # noqa: PLC0415 - heavy
 
                 self._compiled = compile_function(self.function, self.signature, **self.options)

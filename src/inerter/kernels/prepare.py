@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from inerter.kernels.cache import announce_compilation, is_kept
 from inerter.kernels.decorators import TUNED, Kernel, compiler_mode
-from inerter.work.progress import ProgressStep, listener_here, told_if_long
+from inerter.work.progress import ProgressStep, listener_here, report_if_long
 
 if TYPE_CHECKING:
     from inerter.work.pool import Pool
@@ -64,7 +64,11 @@ def _compile(missing: list[Kernel], progress: ProgressCallback | None) -> None:
                     listener.tell(ProgressStep(f"compiling kernels ({kernel.title})", number, len(missing)))
                 yield kernel
 
-    with announce_compilation(progress is None), told_if_long("compiling the numerical kernels"), ExitStack() as stack:
+    with (
+        announce_compilation(progress is None),
+        report_if_long("compiling the numerical kernels"),
+        ExitStack() as stack,
+    ):
         for helper in range(helpers):
             stack.enter_context(_helper(next_kernels(waiting.popleft if helper % 2 else waiting.pop)))
         for kernel in next_kernels():

@@ -62,6 +62,6 @@ def at_readings(record: Record) -> Record:
         if found is not None:
             record = record.samples(
                 found.readings,
-                f"The {role} was {found.way} between readings: of every {found.every} samples one is left.",
+                f"The {role} was {found.way} between readings: one of every {found.every} samples is kept.",
             )
     return record

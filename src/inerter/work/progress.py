@@ -251,7 +251,7 @@ def within(name: str, first: float = 0.0, last: float = 1.0) -> Iterator[None]:
 
 
 @contextmanager
-def told_if_long(text: str) -> Iterator[None]:
+def report_if_long(text: str) -> Iterator[None]:
     """Report internal work, such as compilation, if it takes long, unless nested in such work.
 
     A listener is told once, and repeats the step. Without a listener there is a warning in the log after 2, 4, 8

@@ -33,6 +33,12 @@ class ExecutorResult(Generic[Result]):
     error: Exception | None = None
 
 
+def check_all_results(found: int, total: int) -> None:
+    """Raise `WorkError` unless an executor has returned results for as many items as it was given."""
+    if found != total:
+        raise WorkError(f"The executor returned results for {found} of {total} parts of the work only.")
+
+
 def check_executor(executor: object) -> None:
     """Raise `InerterError` for an object that is not an executor."""
     if not isinstance(executor, Executor):

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Generic
 
-from inerter.errors import WorkError
 from inerter.work.chunks import THREADS, Item, Result
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
+from inerter.work.returns import check_all_results
 
 _POOL: ContextVar[Pool | None] = ContextVar("pool", default=None)
 
@@ -69,8 +69,7 @@ def map_items(
         found[number] = result
         if progress is not None:
             progress(len(found) / len(items))
-    if len(found) != len(items):
-        raise WorkError(f"the executor has given {len(found)} of {len(items)} results, and some of them twice.")
+    check_all_results(len(found), len(items))
     return [found[number] for number in range(len(items))]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -190,17 +191,14 @@ class MeasuredLine:
     path: Path
     digest: str  # SHA-256 of the file
     side: str  # left or right; empty: of two tracks the mean
-    roughness: float  # [m^3/cycle]
-    unevenness: float  # of the profile's own line, at n0 [m^3]
-    waviness: float  # of that line
-    scatter: float  # of the bands about it, as a factor
-    bands: int
-    lowest: float  # [cycle/m]
-    highest: float
-    shape: RoadShape | None = None  # of the spectrum about the line of waviness 2
+    spectrum: RoadSpectrum  # of the profile, with its own line
     reading: tuple[str, ...] = ()  # sentences about how the file was read
     sampling: str = POINTS
-    folded: float = 1.0  # the line of the samples over that of the road
+
+    @cached_property
+    def road(self) -> Road:
+        """The road of waviness 2, at any speed."""
+        return self.spectrum.road(1.0)
 
     @property
     def source(self) -> str:
@@ -210,20 +208,20 @@ class MeasuredLine:
     @property
     def note(self) -> str:
         """Sentence on the fitted road: source, class, roughness, and the waviness and scatter of the free fit."""
-        letter = Road(self.roughness, 1.0).iso8608_class.letter
-        band = format_range(self.lowest, self.highest, "cycle/m", 3)
+        letter = self.road.iso8608_class.letter
+        band = format_range(self.spectrum.lowest, self.spectrum.highest, "cycle/m", 3)
         return (
             f"the road is the spectrum of waviness 2 fitted to {self.source}: class {letter} of ISO 8608, roughness "
-            f"{format_quantity(self.roughness, 'm^3/cycle', 6)}; a fit with free waviness to {self.bands} bands from "
-            f"{band} has a waviness of {format_number(self.waviness, 3)}, and the bands scatter about it by a factor "
-            f"of {format_number(self.scatter, 3)}{self._correction}"
+            f"{format_quantity(self.road.roughness, 'm^3/cycle', 6)}; a fit with free waviness to "
+            f"{self.spectrum.bands} bands from {band} has a waviness of {format_number(self.spectrum.waviness, 3)}, "
+            f"and the bands scatter about it by a factor of {format_number(self.spectrum.scatter, 3)}{self._correction}"
             + "".join(f". {said.rstrip('.')}" for said in self.reading)
         )
 
     @property
     def _correction(self) -> str:
         """Sentence on the correction for sampling [%]; empty if it is small."""
-        change = 100.0 * (1.0 / self.folded - 1.0)
+        change = 100.0 * (1.0 / self.spectrum.folded - 1.0)
         if abs(change) < 100.0 * _FOLDED:
             return ""
         what = "of points" if self.sampling == POINTS else "of averages over an interval"
@@ -236,23 +234,25 @@ class MeasuredLine:
     @property
     def warnings(self) -> Iterator[str]:
         """Warnings on differences between the fitted and the measured road."""
-        if not _WAVINESS <= self.waviness <= _TO:
-            below, above = ("smoother", "rougher") if self.waviness > 2.0 else ("rougher", "smoother")
+        if not _WAVINESS <= self.spectrum.waviness <= _TO:
+            below, above = ("smoother", "rougher") if self.spectrum.waviness > 2.0 else ("rougher", "smoother")
             yield (
-                f"Beware: {self.source} has a waviness of {format_number(self.waviness, 3)}, and the road of the study "
-                f"has 2: below {format_quantity(self._same, 'cycle/m', 2)} it is {below} than the measured one, above "
-                f"{above}."
+                f"Beware: {self.source} has a waviness of {format_number(self.spectrum.waviness, 3)}, and the road of "
+                f"the study has 2: below {format_quantity(self._same, 'cycle/m', 2)} it is {below} than the measured "
+                f"one, above {above}."
             )
-        if self.bands < _FEWEST:
+        if self.spectrum.bands < _FEWEST:
             yield (
-                f"Beware: the road is fitted to no more than {self.bands} bands of {self.source}, from "
-                f"{format_range(self.lowest, self.highest, 'cycle/m', 2)}; measure a longer profile with closer points."
+                f"Beware: the road is fitted to no more than {self.spectrum.bands} bands of {self.source}, from "
+                f"{format_range(self.spectrum.lowest, self.spectrum.highest, 'cycle/m', 2)}; measure a longer profile "
+                f"with closer points."
             )
 
     @property
     def _same(self) -> float:
         """Spatial frequency at which both fitted lines are equal [cycle/m]."""
-        return float(N0 * (0.5 * self.unevenness * N0**2 / self.roughness) ** (1.0 / (self.waviness - 2.0)))
+        own = self.spectrum
+        return float(N0 * (own.unevenness / own.standard) ** (1.0 / (own.waviness - 2.0)))
 
 
 def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[MeasuredLine | None, list[Problem]]:
@@ -277,7 +277,7 @@ def line_through(road: Mapping[str, Any] | None, beside: Path) -> tuple[Measured
         return None, [at(("road", "profile"), got=problem.got, fault=problem.fault, expected=problem.expected)]
     except (RecordError, OSError, ValueError) as error:  # the last: a name that no file can have
         return None, [at(("road", "profile"), str(error))]
-    return _line(path, digest, side, spectrum, measured.notes, sampling), []
+    return MeasuredLine(path, digest, side, spectrum, measured.notes, sampling), []
 
 
 _PROFILE = 'a table of distances and heights, such as profile = "road.csv"'
@@ -294,31 +294,10 @@ def remark(line: MeasuredLine | None) -> str:
     return "".join(f"# {part}\n" for part in wrap(text, _WIDTH)) + "\n"
 
 
-def _line(
-    path: Path, digest: str, side: str, spectrum: RoadSpectrum, reading: tuple[str, ...], sampling: str
-) -> MeasuredLine:
-    return MeasuredLine(
-        path=path,
-        digest=digest,
-        side=side,
-        roughness=spectrum.road(1.0).roughness,
-        unevenness=spectrum.unevenness,
-        waviness=spectrum.waviness,
-        scatter=spectrum.scatter,
-        bands=spectrum.bands,
-        lowest=spectrum.lowest,
-        highest=spectrum.highest,
-        shape=spectrum.road(1.0).shape,
-        reading=reading,
-        sampling=sampling,
-        folded=spectrum.folded,
-    )
-
-
 def without_source(values: Mapping[str, Any], line: MeasuredLine | None) -> dict[str, Any]:
     """Values of a section [road] in a resolved file, with the roughness of a measured `line` if there is one."""
     own = {field.key: values[field.key] for field in ROAD_QUANTITIES}
-    measured = {} if line is None else {"roughness": line.roughness}
+    measured = {} if line is None else {"roughness": line.road.roughness}
     return {**own, **measured, "coherence": values["coherence"]}
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
 from inerter.formatting import format_some
@@ -48,3 +48,15 @@ def some(names: Iterable[str]) -> str:
     'k0, k1, k2, k3, k4, k5, k6, k7, k8, k9, k10, k11 and 88 more'
     """
     return format_some(names, _MOST)
+
+
+def missing_kind(option: str, plural: str, known: Mapping[str, str]) -> str:
+    """Lines on an option that is missing: the kinds that it may have, each with its description.
+
+    >>> print(missing_kind("--to", "exports", {"fmu": "functional mock-up unit", "csv": "table"}))
+    --to is missing; kinds of exports:
+      fmu  functional mock-up unit
+      csv  table
+    """
+    width = max(map(len, known))
+    return "\n".join([f"{option} is missing; kinds of {plural}:", *(f"  {k:<{width}}  {t}" for k, t in known.items())])

@@ -17,7 +17,7 @@ import xarray as xr
 
 from inerter.atomic_io import write_netcdf, write_text
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import OK, Status, StatusKind, WorkError
+from inerter.errors import OK, Status, StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Outcome, portable
@@ -37,6 +37,7 @@ from inerter.work.journal import Journal
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
+from inerter.work.returns import check_all_results
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
 _Done = dict[StudyPart[Any], Answer]
@@ -220,9 +221,7 @@ def _compute_outcomes(
             for result in ready:
                 _enter(result, found, done)
             tell(ready[-1])
-        lost = len(found.pending()) + len(set(parts) - set(done))
-        if lost:
-            raise WorkError(f"the executor returned no result for {lost} of {total} parts, and others twice.")
+        check_all_results(total - len(found.pending()) - len(set(parts) - set(done)), total)
     return found, done, len(pending)
 
 

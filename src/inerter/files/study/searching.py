@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from inerter.atomic_io import write_text
-from inerter.errors import OK, Status, StatusKind, WorkError
+from inerter.errors import OK, Status, StatusKind
 from inerter.files.common.folder import FIGURES, REPORT, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
@@ -38,6 +38,7 @@ from inerter.networks.parser import names
 from inerter.table import Table, csv_rows, csv_text
 from inerter.work.pool import Pool, worker_pool
 from inerter.work.progress import logging_steps
+from inerter.work.returns import check_all_results
 
 TABLE, FRONT_TABLE, REAL_TABLE = "search.csv", "search_front.csv", "search_real_inerters.csv"
 
@@ -270,9 +271,7 @@ class _Work:
             self.done |= {one.part: one for one in ready}
             self.ready += sum(sizes[one.part] for one in ready)
             self._tell(ready, ready[-1])
-        missing = len(set(parts) - set(self.done))
-        if missing:
-            raise WorkError(f"the executor returned no result for {missing} of {len(parts)} parts, and others twice.")
+        check_all_results(len(parts) - len(set(parts) - set(self.done)), len(parts))
         self.computed += sum(sizes[part] for part in pending)
         return [self.done[part] for part in parts]
 

@@ -23,7 +23,7 @@ def _misfit_text(f: Finding) -> str:
 
 
 def _trial_text(f: Finding) -> str:
-    """What to try where no cause of a misfit is known."""
+    """Next steps where no cause of a misfit is known."""
     if f.numbers["sampled"] < _FEW:
         return (
             f"The motion has only some {format_number(f.numbers['sampled'], 2)} samples in a period, between which "

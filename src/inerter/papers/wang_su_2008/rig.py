@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inerter.networks.elements import Damper, Friction, Inerter, Network, Spring
 from inerter.records.result import Response
 from inerter.signals.harmonics import cosine, flat_multisine
+from inerter.validation import number_or_none
 
 Matrix = NDArray[np.float64]
 NAME = "staged"
@@ -81,7 +82,7 @@ def compute(name: str) -> dict[str, Any]:
         "parameters": {
             n: {
                 "unit": p.unit,
-                "value": _none_if_nan(p.value),
+                "value": number_or_none(p.value),
                 "interval": p.interval,
                 "said": found.identifiable[n].sentence,
             }
@@ -117,10 +118,6 @@ def rig_test_from_json(numbers: Mapping[str, Any]) -> RigTest:
         notes=tuple(numbers["notes"]),
         status=numbers["status"],
     )
-
-
-def _none_if_nan(value: float) -> float | None:
-    return None if np.isnan(value) else float(value)
 
 
 def _motion_to_json(

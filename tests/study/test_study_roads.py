@@ -465,7 +465,7 @@ def test_what_is_advised_about_the_columns_of_a_profile_can_be_done(header: str,
     (tmp_path / "road.csv").write_text("\n".join([renamed, *lines]), encoding="utf-8")
     path.write_text(text_of('profile = "road.csv"'), encoding="utf-8")
     assert by_keys is not None
-    assert by_keys.roughness == pytest.approx(load_study(path).line.road.roughness, rel=1e-12)
+    assert by_keys.road.roughness == pytest.approx(load_study(path).line.road.roughness, rel=1e-12)
 
 
 BAD_KEYS = {

@@ -12,6 +12,7 @@ import numpy as np
 from inerter.app.designs import baseline_of, designs_of, one_design, problem_digest
 from inerter.app.documents import study_for
 from inerter.app.histories import history
+from inerter.app.kinds import Tell, report_nothing
 from inerter.app.panels import PANELS
 from inerter.app.warm import is_compiled
 from inerter.app.wire import encode_json
@@ -32,6 +33,7 @@ from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
 from inerter.tasks.budgets import element_break_even
+from inerter.tasks.margins import SHARES
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.registry import VEHICLES
@@ -40,7 +42,7 @@ from inerter.work.blas_threads import one_blas_thread
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
 
-_SAMPLES, _SHARES = 1024, (0.05, 0.5, 0.95)  # of a sample of scatter
+_SAMPLES = 1024  # of scatter
 
 
 def first() -> None:
@@ -157,9 +159,7 @@ def tree_of(network: Network) -> Answer:
     return {"kind": type(network).__name__.lower(), "parts": [tree_of(part) for part in network.parts]}
 
 
-def optimum(
-    study: Study, body: Body, tell: Callable[[int, int, str], None] = lambda count, total, case: None
-) -> Answer:
+def optimum(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
     """Best design of each layout for each requested index, found and evaluated as in a study.
 
     With it, in the sentences of its report, what the best become at other speeds, first what makes them doubtful.
@@ -265,10 +265,10 @@ def scatter(study: Study, body: Body) -> Answer:
         "nominal": found.nominal.value,
         "mean": found.mean,
         "standard_deviation": found.standard_deviation,
-        "quantiles": {str(share): found.quantile(share) for share in _SHARES},
+        "quantiles": {str(share): found.quantile(share) for share in SHARES},
         "standard_errors": {
             **found.standard_errors,
-            **{str(share): found.quantile_estimate(share).standard_error for share in _SHARES},
+            **{str(share): found.quantile_estimate(share).standard_error for share in SHARES},
         },
         "worst": found.worst,
         "worst_values": found.worst_values,

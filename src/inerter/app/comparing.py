@@ -12,7 +12,7 @@ import numpy as np
 from inerter.app.designs import Design, baseline_of, designs_of, given_design
 from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
-from inerter.app.kinds import Tell
+from inerter.app.kinds import Tell, report_nothing
 from inerter.decision.results import Improvement, is_doubtful, possibly_least
 from inerter.errors import DesignError
 from inerter.files.common.layouts import LayoutCodec
@@ -91,15 +91,10 @@ def indices(study: Study, body: Body) -> Answer:
     }
 
 
-def side_by_side(study: Study, body: Body) -> Answer:
-    """Comparison of two to four designs with the first of them; each may belong to another study."""
-    return compare_designs(study, body, lambda done, total, told, found=None: None)
-
-
-def compare_designs(study: Study, body: Body, tell: Tell) -> Answer:
+def compare_designs(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
     """Comparison of two to four designs with the first of them, with a progress report before each.
 
-    What is asked of all, on which road and by which methods, is what `study` says.
+    Each may belong to another study. What is asked of all, on which road and by which methods, is what `study` says.
     """
     designs = _of_studies(study, body)
     if not _FEWEST <= len(designs) <= _MOST:

@@ -11,6 +11,7 @@ from typing import Any
 from inerter.app.comparing import DesignEstimate, describe_estimate, describe_result, evaluate_design, improvement_of
 from inerter.app.designs import Design, baseline_of, designs_of, one_design, problem_digest
 from inerter.app.index_values import DesignLimit, limits_at
+from inerter.app.kinds import Tell, report_nothing
 from inerter.app.wire import typeset_sentences
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
@@ -22,7 +23,7 @@ from inerter.formatting import format_list, typeset
 from inerter.methods.compare import compare_estimates
 from inerter.methods.method import Estimate
 from inerter.methods.registry import brief_words_of, with_decisive_method
-from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins, Progress
+from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins
 from inerter.tasks.margins import margins as find_margins
 from inerter.validation import number_or_none
 
@@ -67,13 +68,11 @@ def decision(study: Study, body: Body) -> Answer:
     }
 
 
-def margins(study: Study, body: Body) -> Answer:
-    """Break-even values, improvements at other speeds, and tolerances of one design against the baseline."""
-    return margins_of(study, body, lambda done, total, what: None)
+def margins(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
+    """Break-even values, improvements at other speeds, and tolerances of one design against the baseline.
 
-
-def margins_of(study: Study, body: Body, tell: Progress) -> Answer:
-    """Margins of a design, with a progress report before each."""
+    There is a progress report before each.
+    """
     design = one_design(study, body)
     baseline = baseline_of(study, body, [])
     index = body.get("index") or study.indices[0]

@@ -21,6 +21,10 @@ class Tell(Protocol):
         """Raises `JobStopped` if the job is to stop."""
 
 
+def report_nothing(done: int, total: int, told: str, found: Any = None) -> None:
+    """No report: that of a panel, whose answer is awaited."""
+
+
 def tell_compiling(tell: Tell) -> Callable[[str, int, int], None]:
     """Report of the kernel compilation. Other threads give it too, so that it does not stop: the next part will."""
 

@@ -25,7 +25,7 @@ PANELS = {
         Panel("indices", "Indices compared with the baseline", "inerter.app.comparing:indices"),
         Panel("decision", "Designs ranked by one index, and the verdict", "inerter.app.deciding:decision"),
         Panel("margins", "Break-even values, other speeds, tolerances", "inerter.app.deciding:margins", quick=False),
-        Panel("compare", "Two to four designs side by side", "inerter.app.comparing:side_by_side"),
+        Panel("compare", "Two to four designs side by side", "inerter.app.comparing:compare_designs"),
         Panel("response", "Frequency response", "inerter.app.answers:response"),
         Panel("mechanism", "The mechanism of the vehicle", "inerter.app.answers:mechanism"),
         Panel("optimise", "Optimal values", "inerter.app.answers:optimum"),

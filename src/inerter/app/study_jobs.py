@@ -9,9 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from inerter.app import deciding
 from inerter.app.answers import optimum, texts_of
 from inerter.app.comparing import compare_designs
-from inerter.app.deciding import margins_of
 from inerter.app.designs import designs_of, problem_digest
 from inerter.app.documents import study_for, study_from
 from inerter.app.fixed_designs import with_fixed_values
@@ -51,7 +51,7 @@ def report(body: Body, folder: Path, tell: Tell) -> Any:
 
 
 def margins(body: Body, folder: Path, tell: Tell) -> Any:
-    return margins_of(study_from(body["study"]), body, tell)
+    return deciding.margins(study_from(body["study"]), body, tell)
 
 
 def sweep(body: Body, folder: Path, tell: Tell) -> Any:

@@ -244,7 +244,7 @@ MODEL = ["--model", "ball-screw", "--starts", "8"]
 # name of the file, its bytes, arguments, words of the sentence
 BAD: dict[str, tuple[str, bytes, list[str], str]] = {
     "empty": ("a.csv", b"", MODEL, "empty"),
-    "no numbers": ("a.csv", b"hello\nworld\n", MODEL, "rows of numbers in two or more columns not found"),
+    "no numbers": ("a.csv", b"hello\nworld\n", MODEL, "rows of numbers not found"),
     "wrong suffix": ("a.xlsx", GOOD, MODEL, "unsupported file suffix '.xlsx'"),
     "no suffix": ("a", GOOD, MODEL, "unsupported file suffix ''"),
     "text named tdms": ("a.tdms", GOOD, MODEL, "indicates TDMS"),

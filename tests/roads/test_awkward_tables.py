@@ -167,3 +167,33 @@ def test_the_old_name_of_to_signal_works_with_a_warning() -> None:
     road = it.Profile([0.0, 1.0], [0.0, 1.0])
     with pytest.warns(DeprecationWarning, match="`driven` is now `to_signal`"):
         assert road.driven(2.0)(0.25) == road.to_signal(2.0)(0.25)
+
+
+COLUMNS = {  # files of 40 heights alone: heading and how a height of so many cm is written
+    "points": ("", lambda h: f"{h:.4f}"),
+    "points below a name": ("height [cm]\n", lambda h: f"{h:.4f}"),
+    "commas": ("", lambda h: f"{h:.4f}".replace(".", ",")),
+    "commas below a name": ("Höhe [cm]\n", lambda h: f"{h:.4f}".replace(".", ",")),
+}
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+def test_heights_alone_are_one_column(name, tmp_path):
+    """Also with decimal commas, which are not two columns of integers."""
+    heading, written_as = COLUMNS[name]
+    heights = np.round(np.random.default_rng(0).normal(size=40), 4)  # cm
+    path = tmp_path / "road.csv"
+    path.write_text(heading + "\n".join(map(written_as, heights)), encoding="utf-8")
+    profile = it.read_profile(path, interval=0.25, units={"height": "cm"})
+    assert profile.right is None
+    np.testing.assert_allclose(profile.height, heights / 100.0, rtol=0, atol=1e-15)
+    np.testing.assert_array_equal(profile.distance, 0.25 * np.arange(40))
+    with pytest.raises(RecordError, match=r"interval=0\.1"):
+        it.read_profile(path, units={"height": "cm"})
+
+
+def test_two_columns_of_integers_stay_two(tmp_path):
+    path = tmp_path / "road.csv"
+    path.write_text("".join(f"{x},{7 * x % 10}\n" for x in range(40)), encoding="utf-8")
+    profile = it.read_profile(path, units={"distance": "m", "height": "mm"})
+    np.testing.assert_array_equal(profile.distance, np.arange(40.0))

@@ -66,7 +66,7 @@ BAD = {
     "backwards": (HEADER + "0, 0\n\n2, 0\n1, 0\n", "must increase, but point 2 is at 1 m after 2 m"),
     "one point": (HEADER + "0, 0\n", "a vector of two or more real numbers"),
     "nothing": ("\n\n", "empty file; expected a header"),
-    "an open quote": (HEADER + '"0, 0\n', "rows of numbers in two or more columns not found"),
+    "an open quote": (HEADER + '"0, 0\n', "rows of numbers not found"),
 }
 
 
@@ -87,7 +87,7 @@ def test_no_file(tmp_path):
 
 def test_not_text(tmp_path):
     (tmp_path / "road.csv").write_bytes(b"\xff\xfe\x00\x81")
-    with pytest.raises(SignalError, match="rows of numbers in two or more columns not found"):
+    with pytest.raises(SignalError, match="rows of numbers not found"):
         profile(tmp_path / "road.csv", 20.0)
 
 

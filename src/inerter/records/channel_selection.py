@@ -101,8 +101,8 @@ def _without_header(
     said = [part for at, role in enumerate(needed, first) for part in (Remedy(Action.CHANNEL, (role, at)), ", ")][:-1]
     units: Any = Remedy(Action.UNITS, tuple((role, EXAMPLES[role]) for role in needed))
     return RecordError(
-        f"{source}: the {len(channels)} columns have no header. Name the column of each channel, counted from 0, and "
-        f"their units, such as ",
+        f"{source}: no column has a header ({len(channels)} found). Name the column of each channel, counted from 0, "
+        f"and their units, such as ",
         *said,
         *(" and ", units, "."),
     )

@@ -34,6 +34,7 @@ _THOUSANDS = re.compile(
 _UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 _THOUSANDS_SAID = "thousands separators. Export numbers without them, such as 1234.5."
 _TAIL = 1 << 12  # bytes at the end in which lines of text are looked for
+_ABSENT = ";"  # delimiter of a table of one column
 _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
 
 
@@ -123,16 +124,33 @@ def _layout(source: str, head: bytes) -> TableLayout:
         delimiters = [delimiter for delimiter in _DELIMITERS if _divides(lines[at : at + 3], delimiter)]
         if delimiters:  # prefer one that leaves only numbers
             delimiter = next((d for d in delimiters if all(map(_is_value_or_missing, _cells(line, d)))), delimiters[0])
-            offset = start + sum(map(len, raw[:at]))
-            return _read_layout(source, lines, at, delimiter, offset, encoding)
+            if delimiter == "," and _has_decimal_commas_alone(lines, at):
+                delimiter = _ABSENT
+            return _read_layout(source, lines, at, delimiter, start + sum(map(len, raw[:at])), encoding)
+    for at in range(len(lines)):
+        if all(map(_is_number, following := [line.strip() for line in lines[at : at + 3]])) and len(following) == 3:
+            return _read_layout(source, lines, at, _ABSENT, start + sum(map(len, raw[:at])), encoding)
     grouped = (cell for line in lines for d in _DELIMITERS for cell in _cells(line, d) if _THOUSANDS.fullmatch(cell))
     if (cell := next(grouped, None)) is not None:
         raise RecordError(f"{source}: the number {quote_value(cell)} has {_THOUSANDS_SAID}")
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
-        f"{source}: rows of numbers in two or more columns not found; the file begins {quote_value(first.strip())}. "
-        f"Expected a header such as 'time [s], displacement [mm], force [N]' and rows of numbers below it."
+        f"{source}: rows of numbers not found; the file begins {quote_value(first.strip())}. Expected a header such as "
+        f"'time [s], displacement [mm], force [N]', of a road 'distance [m], height [mm]', and rows of numbers below it."
     )
+
+
+def _has_decimal_commas_alone(lines: list[str], at: int) -> bool:
+    """Whether what looks like two columns divided by a comma is one of numbers with decimal commas.
+
+    Then the heading has one cell, or the second part of a number begins with a zero, or the first is minus zero.
+    """
+    rows = [line.strip().split(",") for line in lines[at:] if line.strip()]
+    if not all(len(cells) == 2 and cells[1].isdecimal() for cells in rows):
+        return False
+    above = [line.strip() for line in lines[:at] if line.strip()]
+    has_one_name = bool(above) and split_heading(above[-1])[1] != "" and len(_cells(above[-1], ",")) == 1
+    return has_one_name or any(cells[0] == "-0" or re.fullmatch(r"0\d+", cells[1]) for cells in rows)
 
 
 def _decode(source: str, raw: list[bytes]) -> tuple[list[str], str]:

@@ -250,7 +250,7 @@ def _columns_by_order(
                 f"{source} has no header, and {which} throughout, so the distance is unknown. Write names above "
                 f'the columns, such as "distance [m], height [mm]", or select both by number, counted from 0, ',
                 *(Remedy(Action.COLUMN, (("distance", 0), ("height", 1))), ", with "),
-                *(Remedy(Action.UNITS, tuple(_EXAMPLES.items())), "."),
+                *(Remedy(Action.UNITS, tuple(_EXAMPLES.items())), ", or give ", Remedy(Action.INTERVAL, 0.1), "."),
             )
         found["distance"] = rising[0]
         left.remove(rising[0])

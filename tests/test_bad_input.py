@@ -32,6 +32,7 @@ from inerter import (
     TyreLoad,
     evaluate,
     evaluate_many,
+    export,
     free,
     frequency_response,
     h2_norm,
@@ -39,6 +40,7 @@ from inerter import (
     network,
     optimise,
     plot_bode,
+    run_study,
     state_space,
 )
 
@@ -268,6 +270,10 @@ OTHER_EXCEPTIONS = {
     "a number as measures of comfort": lambda: mechanism(measures=PerformanceOutputs(comfort=5)),
     "endless delay": lambda: system().with_delays("road", [math.inf]),
     "frequencies as text": lambda: frequency_response(system(), ["a"]),
+    "a frequency as text": lambda: frequency_response(system(), "1.0"),
+    "a frequency that is true": lambda: frequency_response(system(), True),
+    "the path of a study for the study": lambda: run_study("my-car.toml", "out"),
+    "kinds of export in a list": lambda: export(car(), ["matlab"], "car.m"),
     "no values": lambda: evaluate_many(open_car(), J1, None, Norm()),
     "complex values": lambda: evaluate_many(open_car(), J1, {"c": np.array([1j]), "b": 1.0}, Norm()),
     "values that are no mapping": lambda: open_car().with_values(5),

@@ -92,7 +92,7 @@ class Registry(Mapping[str, Entry], Generic[Entry]):
         load_plugins()
         try:
             return self._entries[key]
-        except KeyError:
+        except (KeyError, TypeError):  # a list has no hash
             close = get_close_matches(str(key), self._entries, n=1)
             hint = f" Did you mean {close[0]!r}?" if close else ""
             raise UnknownEntryError(f"Unknown {self._what} {key!r}; available: {', '.join(self)}.{hint}") from None

@@ -49,7 +49,10 @@ def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, re
     if pade_order is not None:
         pade(pade_order)  # refuses an order that there is not, even where nothing is late
     try:
-        frequencies = np.atleast_1d(np.asarray(omega, dtype=float))
+        given = np.asarray(omega)
+        if given.dtype.kind not in "iufO":  # a text or a bool that NumPy would convert
+            raise TypeError
+        frequencies = np.atleast_1d(given.astype(float))
     except (TypeError, ValueError):
         raise LinearSystemError(f"A frequency response needs a list of frequencies [rad/s], got {omega!r}.") from None
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)):

@@ -136,7 +136,7 @@ def _layout(source: str, head: bytes) -> TableLayout:
     first = next((line for line in lines if line.strip()), "with one very long line")
     raise RecordError(
         f"{source}: rows of numbers not found; the file begins {quote_value(first.strip())}. Expected a header such as "
-        f"'time [s], displacement [mm], force [N]', of a road 'distance [m], height [mm]', and rows of numbers below it."
+        f"'time [s], displacement [mm], force [N]', of a road 'distance [m], height [mm]', and rows of numbers below."
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.errors import InerterError
+from inerter.errors import InerterError, StudyError
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
@@ -92,6 +92,8 @@ def check_study(study: Study, tell: Callable[[int, int], object] = lambda done, 
     global _sound  # noqa: PLW0603
     if study is _sound:
         return
+    if not isinstance(study, Study):
+        raise StudyError(f'Expected a study, such as load_study("my-car.toml"), got {study!r}.')
     problems = list(unchosen_problems(study))
     every = cases(study)
     tried = () if problems else _points_to_check(every)

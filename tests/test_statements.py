@@ -138,13 +138,15 @@ def test_every_kind_of_every_catalogue_has_a_sentence(catalogue: ModuleType) -> 
     enums = [one for one in there if isclass(one) and issubclass(one, StrEnum) and one.__module__ == catalogue.__name__]
     for kinds in enums:
         own = [table for table in tables if isinstance(next(iter(table)), kinds)]
-        stated = [kind for kind in kinds if callable(said := getattr(kind, "_sentence", "")) or said]
+        stated = [
+            kind for kind in kinds if callable(said := getattr(kind, "words", getattr(kind, "_sentence", ""))) or said
+        ]
         assert own or stated == [*kinds]
         assert all(set(table) == set(kinds) for table in own)
     assert enums or catalogue is friction  # whose kinds are a literal type
 
 
-@pytest.mark.parametrize("kinds", [RecordFinding, FitFinding, MisfitPattern, Suspect])
+@pytest.mark.parametrize("kinds", [RecordFinding, FitFinding, MisfitPattern, Suspect, Action, Verdict])
 def test_a_kind_is_its_key(kinds: type[StrEnum]) -> None:
     for kind in kinds:
         assert kinds(str(kind)) is kind
@@ -153,7 +155,7 @@ def test_a_kind_is_its_key(kinds: type[StrEnum]) -> None:
 
 
 def test_a_kind_without_its_sentence_is_refused() -> None:
-    with pytest.raises(TypeError, match="sentence"):
+    with pytest.raises(TypeError, match="words"):
 
         class _Kinds(FindingKind):
             SILENT = "silent"

@@ -8,7 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from enum import StrEnum
-from typing import TypeVar
+from typing import Any, Self, TypeVar
+
+
+class WordedEnum(StrEnum):
+    """Keys, each with its words: a text, the parts of one, or a function that formats what it is given."""
+
+    words: Any
+
+    def __new__(cls, key: str, words: Any) -> Self:
+        member = str.__new__(cls, key)
+        member._value_, member.words = key, words
+        return member
+
+    def format_words(self, of: object) -> Any:
+        """The words, formatted for a statement, its numbers or a value."""
+        return self.words(of) if callable(self.words) else self.words
 
 
 class Severity(StrEnum):

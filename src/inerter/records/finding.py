@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
-from typing import Any, Self
+from typing import Any
 
 from inerter.records.remedy import Remedy, Text, in_python
-from inerter.statements import Severity, Statement
+from inerter.statements import Severity, Statement, WordedEnum
 
 
-class FindingKind(StrEnum):
-    """Kinds of findings, each with its sentence: a text, or a function that formats it."""
-
-    _sentence: str | Text | Callable[[Finding], str | Text]
-
-    def __new__(cls, key: str, sentence: str | Text | Callable[[Finding], str | Text]) -> Self:
-        kind = str.__new__(cls, key)
-        kind._value_ = key
-        kind._sentence = sentence
-        return kind
+class FindingKind(WordedEnum):
+    """Kinds of findings, each with its sentence: a text, or a function of the finding."""
 
     def text(self, finding: Finding) -> Text:
         """The parts of the sentence of such a finding."""
-        sentence = self._sentence(finding) if callable(self._sentence) else self._sentence
+        sentence: str | Text = self.format_words(finding)
         return (sentence,) if isinstance(sentence, str) else sentence
 
 

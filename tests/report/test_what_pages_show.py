@@ -261,12 +261,12 @@ def test_every_layout_of_a_front_of_three_is_in_its_picture_and_legend():
     )
     shape, dims = (2, points), ("layout", "front_point")
     data = data.assign(
-        front_value=((*dims, "criterion"), random.random((*shape, 3)), {"method_words": "without friction"}),
+        front_value=((*dims, "criterion"), random.random((*shape, 3)), {"title": "Trade-off between a, b and c"}),
         front_knee=(dims, np.arange(points) == np.full((2, 1), 2)),
         front_jump=(dims, np.zeros(shape, dtype=bool)),
     )
     (figure,) = [figure for figure in study_figures(data) if figure.name == "front"]
-    assert figure.caption.startswith("Trade-off between a, b and c, without friction: ")
+    assert figure.caption.startswith("Trade-off between a, b and c: ")
     with style_context():
         drawn = figure.draw()
     assert [text.get_text() for text in drawn.legends[0].get_texts()] == ["S1 (baseline)", "S2"]

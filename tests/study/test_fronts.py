@@ -85,6 +85,8 @@ def test_a_front_is_told_and_drawn(found: StudyResult, tmp_path: Path) -> None:
     shown = [tuple(cell.text for cell in cells[:2]) for _, cells in table.shown_rows()]
     assert shown[:3] == [("S1", "least J1"), ("S1", "knee"), ("S1", "least tyre-load")]
     (figure,) = [figure for figure in study_figures(found.data) if figure.name == "front"]
+    title = found.data["front_value"].attrs["title"]
+    assert all(text.startswith(title) for text in (sentence, table.caption, figure.caption))
     with style_context():
         figure.draw().draw_without_rendering()
     page = report(StudyContents(found.data, found.study, found.answers), tmp_path)

@@ -12,7 +12,6 @@ from inerter.formatting import (
     Scale,
     capital,
     choose_scale,
-    format_list,
     format_percent,
     format_quantity,
     is_prefixed,
@@ -191,18 +190,6 @@ def criterion_title(results: xr.Dataset, name: str) -> str:
 def criterion_unit(results: xr.Dataset, name: str) -> str:
     """The unit of an index of a trade-off."""
     return str(results["criterion_unit"].sel(criterion=name).item())
-
-
-def which_front(results: xr.Dataset) -> str:
-    """Words for titles: the method of the fronts if the study has several."""
-    words = results["front_value"].attrs.get("method_words", "")
-    return f", {words}" if words else ""
-
-
-def trade_off_title(results: xr.Dataset) -> str:
-    """Title of the trade-off: its indices, and the method if the study has several."""
-    titles = [criterion_title(results, name) for name in criteria(results)]
-    return f"Trade-off between {format_list(titles)}{which_front(results)}"
 
 
 def flat_range(entry: xr.Dataset) -> str:

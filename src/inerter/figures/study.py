@@ -30,7 +30,6 @@ from inerter.figures.labels import (
     one_method,
     swept_places,
     swept_words,
-    trade_off_title,
 )
 from inerter.figures.maps import index_maps, parameter_maps, parameter_panels
 from inerter.figures.style import add_legend, file_stems, new_figure, save, style_context
@@ -87,7 +86,7 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
     if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
         yield StudyFigure(
             "front",
-            f"{trade_off_title(every)}: along a front an index improves only as "
+            f"{every['front_value'].attrs.get('title', 'Trade-off')}: along a front an index improves only as "
             f"{'the other' if len(criteria(every)) == 2 else 'another'} gets worse. Large open markers: the knee, "
             "beyond which a small gain costs much."
             + (" Gaps: the front continues with another kind of design." if bool(every["front_jump"].any()) else ""),

@@ -150,7 +150,7 @@ class Fronts(Task[FrontAnswer]):
             criterion_unit=("criterion", [study.unit(name) for name in study.trade_off]),
         )
         of_points = ("layout", "front_point", "criterion")
-        attributes = {"long_name": "index at a point of the front", "method_words": _method_words(study)}
+        attributes = {"long_name": "index at a point of the front", "title": _title(study)}
         there = {"long_name": "that index in each condition"}
         if study.conditions:
             labelled = labelled.assign(front_in_conditions=((*of_points, CONDITION), each, there))
@@ -235,13 +235,9 @@ def _without(layout: str, status: str, message: str) -> FrontAnswer:
 
 def _title(study: Study) -> str:
     """Title of the trade-off: its indices, and the method if the study has several."""
-    by, titles = _method_words(study), [study.objective_title(name) for name in study.trade_off]
+    titles = [study.objective_title(name) for name in study.trade_off]
+    by = method_labels(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
     return f"Trade-off between {format_list(titles)}{by and f', {by}'}"
-
-
-def _method_words(study: Study) -> str:
-    """Method of the fronts in words, if the study has several."""
-    return method_labels(replace(study, evaluate=study.methods))[str(study.optimise)] if len(study.methods) > 1 else ""
 
 
 def _rows(study: Study, front: FrontAnswer, parameters: Sequence[str]) -> Iterator[Row]:

@@ -1,11 +1,13 @@
 """Optima within limits: against a second solver of another kind, against themselves with limits moved, and in words."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
 import scipy.optimize
 from campaigns import sampled
+from hypothesis import given
+from hypothesis import strategies as st
 from strategies import random_half_car, random_quarter_car
 from wang_su import J1, J3, J5, paper_quarter_car
 
@@ -14,7 +16,7 @@ from inerter.errors import ErrorSource, Status, StatusKind
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.optimisation.active_constraints import ConstraintResult, with_limits
 from inerter.optimisation.constrained_search import ConstrainedProblem
-from inerter.optimisation.limits import bounds_of, for_each
+from inerter.optimisation.limits import Bound, Sense, bounds_of, for_each
 
 NORM = it.Norm()
 RESPONSE = it.RandomResponse({"force": 1.0}, it.WhiteForce("push", 1.0))  # whose outputs decide its unit
@@ -303,3 +305,25 @@ def test_a_start_counts_the_less_the_further_it_is_beyond_a_limit(number):
     beyond = np.argsort(limited)[np.sort(limited) > bound]
     assert np.all(factor[beyond] > 1.0)
     assert np.all(np.diff(factor[beyond]) > 0.0)
+
+
+@given(st.floats(-5.0, 5.0))
+def test_an_equality_is_violated_by_the_worse_of_both_sides(off: float) -> None:
+    most, least, equal = (float(sense.excess(np.array(off))) for sense in (Sense.AT_MOST, Sense.AT_LEAST, Sense.EQUAL))
+    assert most == off == -least
+    assert equal == max(most, least)
+
+
+@pytest.mark.parametrize("sense", Sense)
+def test_an_unknown_or_infinite_quantity_violates_every_limit(sense: Sense) -> None:
+    road = it.Road(5e-7, 25.0)
+    bound = Bound(it.at_most(it.TyreLoad(road), 500.0), _Constant())
+    bound = replace(bound, limit=replace(bound.limit, sense=sense))
+    assert bound.excess(np.array([[np.nan], [np.inf]])).tolist() == [np.inf, np.inf]
+
+
+class _Constant:
+    """The quantity is the only value of each point."""
+
+    def values(self, points: np.ndarray) -> np.ndarray:
+        return points[:, 0]

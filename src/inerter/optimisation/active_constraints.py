@@ -49,8 +49,7 @@ class ConstraintResult:
     def excess(self) -> float:
         """Constraint violation of the logarithm; negative if satisfied."""
         with np.errstate(divide="ignore"):
-            off = float(np.log(self.value / self.limit.value))
-        return {Sense.AT_MOST: off, Sense.AT_LEAST: -off, Sense.EQUAL: abs(off)}[self.limit.sense]
+            return float(self.limit.sense.excess(np.log(self.value / self.limit.value)))
 
     @property
     def is_safe(self) -> bool:

@@ -30,6 +30,10 @@ class Sense(Enum):
     AT_LEAST = "at least"
     EQUAL = "equal to"
 
+    def excess(self, off: Array) -> Array:
+        """Constraint violation at the logarithm `off` of value over limit; negative if satisfied."""
+        return -off if self is Sense.AT_LEAST else np.abs(off) if self is Sense.EQUAL else off
+
 
 @dataclass(frozen=True)
 class Limit:
@@ -156,14 +160,7 @@ class Bound:
         """Constraint violation of the logarithm at each row of `points`; infinite where unknown."""
         with np.errstate(divide="ignore", invalid="ignore"):
             off = np.log(self.function.values(points) / self.limit.value)
-        off = np.where(np.isnan(off), np.inf, off)
-        match self.limit.sense:
-            case Sense.AT_MOST:
-                return np.asarray(off)
-            case Sense.AT_LEAST:
-                return np.asarray(np.where(off == np.inf, np.inf, -off))
-            case Sense.EQUAL:
-                return np.asarray(np.abs(off))
+        return np.where(off < np.inf, self.limit.sense.excess(off), np.inf)
 
 
 def bounds_of(vehicle: Vehicle, limits: Sequence[Limit], method: Method) -> tuple[Bound, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import infeasible, layouts, one_method, swept_words
-from inerter.files.study.limits import is_swept, limit_text, limited_quantity_words
+from inerter.files.study.limits import SENSES, is_swept, limit_text, limited_quantity_words
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
@@ -19,8 +19,6 @@ from inerter.report.index_summary import sweep_headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.speeds import speed_sentences
 from inerter.report.verdicts import verdict_sentences
-
-_SIDES = {"at_most": 1.0, "at_least": -1.0, "equal": 0.0}  # of a limit, on which a value misses it
 
 
 def conclusion_sentences(
@@ -84,8 +82,8 @@ def _closest_design_clause(results: xr.Dataset, study: Study) -> str:
     values = results["limit_value"].stack(design=("layout", "index")).transpose("design", "limit")
     with np.errstate(divide="ignore"):
         beyond = np.log(values.values / [limit.value for limit in study.limits])
-    sides = np.array([_SIDES[limit.sense] for limit in study.limits])
-    missed = np.where(sides == 0.0, np.abs(beyond), sides * beyond).max(axis=1)
+    each = [SENSES[limit.sense].excess(off) for limit, off in zip(study.limits, beyond.T, strict=True)]
+    missed = np.max(each, axis=0)
     if np.isnan(missed).all():
         return ""
     best = int(np.nanargmin(missed))

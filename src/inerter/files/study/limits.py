@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -23,7 +23,7 @@ from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import constituents_of
 from inerter.methods.static_stiffness import static_stiffness
 from inerter.optimisation.active_constraints import ConstraintResult
-from inerter.optimisation.limits import Limit, at_least, at_most, equal, for_each, output_of
+from inerter.optimisation.limits import Limit, Sense, for_each, output_of
 from inerter.units import PURE, are_compatible, parse_quantity, quote_value, unit_in
 from inerter.vehicle.vehicle import Vehicle
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
 _STIFFNESS, _STIFFNESS_UNIT = "static-stiffness", "N/m"
-_SENSES: dict[str, Callable[[IndexLike, float], Limit]] = {"at_most": at_most, "at_least": at_least, "equal": equal}
+SENSES = {sense.name.lower(): sense for sense in Sense}  # by their keys
 _EQUAL = "equal"
 _PLACE = ("study", "subject_to")
 
@@ -124,7 +124,7 @@ class LimitsCodec(ByPlaceCodec):
     def raw_entries(self, raw: Any) -> Iterator[RawEntry]:
         """Values of all limits, in tables of tables where their names are written without quotes."""
         for name, inside in raw.items() if isinstance(raw, Mapping) else ():
-            if name in _SENSES:
+            if name in SENSES:
                 yield RawEntry(_LIMIT, inside, (name,), words=in_words(name))
             else:
                 for entry in self.raw_entries(inside):
@@ -256,7 +256,7 @@ def limits_in(study: Study, layout: str) -> list[list[Limit]]:
     """The limits of a study for a layout, each in all of its conditions, at the quantile if the study has one."""
     return [
         [
-            _SENSES[limit.sense](study.at_quantile(index, layout, _share(study, limit)), limit.value)
+            Limit(study.at_quantile(index, layout, _share(study, limit)), SENSES[limit.sense], limit.value)
             for index in study.in_each(quantity_limited(study, limit.of))
         ]
         for limit in study.limits
@@ -268,7 +268,7 @@ def _share(study: Study, limit: StudyLimit) -> float | None:
     share = study.limit_quantile
     if share is None or limit.sense == _EQUAL:
         return None
-    return share if _SENSES[limit.sense] is at_most else 1.0 - share
+    return share if SENSES[limit.sense] is Sense.AT_MOST else 1.0 - share
 
 
 def all_limits(study: Study, layout: str) -> list[Limit]:

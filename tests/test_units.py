@@ -139,6 +139,8 @@ def test_the_unit_tells_the_element(text, unit, value):
         ("1e400 N/m", ("too large",)),
         ("1e308 GN/m", ("too large",)),
         ("5 degC", ("incompatible unit",)),
+        ("5 N/m/deg", ("incompatible unit",)),
+        ("5 N rad/m", ("incompatible unit",)),
         ("5 dBm", ("incompatible unit",)),
         ("5 N/m)", ("unknown unit",)),
         ("5 N/m*", ("unknown unit",)),
@@ -208,6 +210,22 @@ def test_a_refused_roughness_is_never_answered_by_a_rougher_one(given):
     """The form that a message recommends is that of class C, whatever number was given."""
     with pytest.raises(UnitError, match=r'such as "256e-6 m\^3"\.$'):
         parse_quantity(given, "m^3/cycle")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"),
+    [("1 kg/deg", "kg"), ("1 kg m^2/rad", "kg m^2"), ("3 kN/turn", "N"), ("5 m/s/rad", "m/s"), ("3 deg", "1")],
+)
+def test_an_angle_is_no_number(text, unit):
+    with pytest.raises(UnitError, match=r"incompatible unit .*; expected a number with a unit of"):
+        parse_quantity(text, unit)
+    with pytest.raises(UnitError, match="is not the unit of any element"):
+        parse_element(text)
+
+
+def test_a_mass_in_carats_is_a_misspelt_one():
+    with pytest.raises(UnitError, match=r'^Got "1 ct": unknown unit "ct" .*; expected a number with a unit of kg'):
+        parse_quantity("1 ct", "kg")
 
 
 def test_an_angular_frequency_in_cycles_is_not_taken_for_radians():

@@ -46,7 +46,7 @@ PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
 _FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa (m^3/cycle)", "256e-6 m^3"
-_OF_YARN = re.compile(r"\b[kM]?Nm\b")  # kilometres a kilogram to pint; whoever writes it here means N m
+_NEVER_MEANT = re.compile(r"\b(?:[kM]?Nm|ct)\b")  # kilometres a kilogram, as of yarn, and a carat to pint
 _LONGEST = 100
 _IMPORTS, _PAUSE = 5, 0.2  # of pint: attempts, and seconds between them
 
@@ -113,7 +113,7 @@ def is_unit(unit: str) -> bool:
     """Whether `unit` is a known unit."""
     if unit in FREQUENT:
         return True
-    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit) or _OF_YARN.search(unit):
+    if len(unit) > _LONGEST or not _UNIT.fullmatch(unit) or _NEVER_MEANT.search(unit):
         return False
     registry = _registry()  # whose failure says nothing of the unit
     try:
@@ -136,7 +136,7 @@ def _density_form(given: str) -> int | None:
     """Power of rad in a unit of displacement spectral density of ISO 8608; None for other units."""
     if given in FREQUENT:
         return 0 if FREQUENT[given][0] == "m^3" else None
-    if not _have_same_dimension(given, "m^3"):
+    if _dimension(given) != _dimension("m^3"):
         return None
     base = _registry().get_base_units(_registry().parse_units(given))[1]
     power = next((n for n in _KAPPA_OVER if base == _registry().parse_units("m^3") * _registry().radian ** n), None)
@@ -268,15 +268,29 @@ def _factors(given: str, unit: str) -> tuple[float, float]:
     return float(registry.convert(1.0, one, other)), float(registry.convert(1.0, other, one))
 
 
-def _have_same_dimension(unit: str, other: str) -> bool:
-    if unit in FREQUENT and other in FREQUENT:
-        return FREQUENT[unit][0] == FREQUENT[other][0]
-    return bool(_dimension(unit) == _dimension(other))
+def _have_same_dimension(given: str, unit: str) -> bool:
+    """Whether quantities in `given` are quantities in `unit`: an angle is a dimension that may only be left out."""
+    if given in FREQUENT and unit in FREQUENT:
+        return FREQUENT[given][0] == FREQUENT[unit][0]
+    return bool(_dimension(given) == _dimension(unit)) and _power_of_angle(given) in (0, _power_of_angle(unit))
 
 
 @cache
 def _dimension(unit: str) -> object:
     return _registry().parse_units(unit).dimensionality
+
+
+@cache
+def _power_of_angle(unit: str) -> float:
+    """Power of an angle in a unit; each of its names by itself, as the factor of all together may overflow."""
+    registry, power = _registry(), 0.0
+    for name, exponent in registry.parse_units_as_container(unit).items():
+        product = registry.get_base_units(registry.parse_units(name) * registry.meter)[
+            1
+        ]  # pint remembers its own hertz alone
+        in_base: Mapping[str, Any] = dict((1.0 * product).unit_items())
+        power += float(str(exponent)) * float(in_base.get("radian", 0.0))
+    return power
 
 
 def _describe_unit(given: str) -> str:

@@ -166,6 +166,15 @@ def test_designs_on_a_measured_road_share_its_errors(load, tmp_path, over):
     assert load_of_it.improvement.bound == pytest.approx(bound_of_soft.sel(index="J3").item(), rel=1e-9)
 
 
+def test_a_sweep_of_the_roughness_may_mix_its_units(load):
+    study = load(
+        ROUGH,
+        settings='indices = ["J1"]\nsweep = { road.roughness = ["1 cm^3/cycle", "256e-6 m^3", "1e-5 m^3/cycle"] }',
+    )
+    assert study.sweeps[0].values == pytest.approx([1e-6, 0.5 * 256e-6 * 0.01, 1e-5], rel=1e-12)
+    assert study.sweeps[0].written == ""  # in SI units
+
+
 @pytest.mark.parametrize(("key", "unit", "other"), [("track", "m", 0.9), ("wavenumber", "cycle/m", 0.31)])
 def test_numbers_of_a_coherence_are_swept_and_vary_between_conditions(load, key, unit, other):
     form = next(form for form in FORMS if form.startswith(key))

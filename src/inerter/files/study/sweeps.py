@@ -89,7 +89,7 @@ def _sweep(study: Study, place: Place, entry: Entry) -> Sweep:
 def _check_units(place: Place, number: Number, texts: tuple[str, ...]) -> None:
     given = dict.fromkeys(map(unit_in, texts))
     alike = [is_unit_for(unit, number.unit) for unit in given]
-    if all(alike) and all(are_compatible(unit, next(iter(given))) for unit in given):
+    if all(alike):
         return
     if any(alike) or not all(are_compatible(unit, next(iter(given))) for unit in given):
         raise EntryError(got=f"values of unlike units, {', '.join(sorted(given))}", expected="one")

@@ -93,9 +93,14 @@ class Registry(Mapping[str, Entry], Generic[Entry]):
         try:
             return self._entries[key]
         except (KeyError, TypeError):  # a list has no hash
-            close = get_close_matches(str(key), self._entries, n=1)
+            meant = self.synonym(str(key))
+            close = [meant] if meant else get_close_matches(str(key), self._entries, n=1)
             hint = f" Did you mean {close[0]!r}?" if close else ""
             raise UnknownEntryError(f"Unknown {self._what} {key!r}; available: {', '.join(self)}.{hint}") from None
+
+    def synonym(self, word: str) -> str | None:
+        """Key of the entry that has this word among its `synonyms`; None if there is none."""
+        return next((key for key, entry in self.items() if word.lower() in getattr(entry, "synonyms", ())), None)
 
     def __iter__(self) -> Iterator[str]:
         load_plugins()

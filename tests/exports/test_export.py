@@ -160,6 +160,8 @@ def test_a_strut_alone_has_neither_outputs_nor_a_speed() -> None:
 
 
 def test_unknown_kinds_and_forms() -> None:
+    with pytest.raises(it.InerterError, match=r"Unknown kind of export 'Simulink'.*Did you mean 'fmu'"):
+        it.export(CAR, "Simulink")
     with pytest.raises(it.InerterError, match=r"Unknown kind of export 'matlba'.*Did you mean 'matlab'"):
         it.export(CAR, "matlba")
     with pytest.raises(it.InerterError, match="Unknown form 'dss'; available: state-space, descriptor"):

@@ -20,7 +20,6 @@ from inerter.files.study.chosen_design import CHOOSE_ONE, WITHOUT_CONDITIONS, ch
 from inerter.units import quote_value
 
 _BY = "export"
-_OPENED_BY = {"simulink": "fmu", "octave": "matlab", "openmodelica": "modelica", "excel": "csv", "tikz": "latex"}
 
 
 def export(
@@ -77,6 +76,6 @@ def _kind(name: str | None) -> ExportKind:
         raise ExportError(missing_kind("--to", "exports", {key: kind.description for key, kind in files.items()}))
     if name in EXPORTS:
         return EXPORTS[name]
-    opened = _OPENED_BY.get(name.lower())
+    opened = EXPORTS.synonym(name)
     hint = nearest(name, files) if opened is None else f" Try: --to {opened}"
     raise ExportError(f"Unknown kind of export {quote_value(name)}; available: {', '.join(files)}.{hint}")

@@ -37,7 +37,8 @@ class ExportKind:
 
     `make(request, suffix)` gives the contents of a file with one of the `suffixes`, text or bytes; of a kind without
     suffixes, an object of Python. `requires` is what the machine must have for it; it `takes` those of `OPTIONS` that
-    `make` reads, and the others are refused.
+    `make` reads, and the others are refused. `synonyms` are other programs that open it, or names for it, in small
+    letters.
 
     >>> import inerter as it
     >>> kind = it.EXPORTS["modelica"]
@@ -51,6 +52,7 @@ class ExportKind:
     make: Callable[[ExportSpec, str], Any]
     requires: str = ""
     takes: tuple[str, ...] = ()
+    synonyms: tuple[str, ...] = ()
 
     @property
     def is_file(self) -> bool:

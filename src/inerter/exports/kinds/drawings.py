@@ -73,4 +73,4 @@ def _short(number: float) -> str:
 
 SVG = ExportKind("svg", "drawing of the networks", (".svg",), _figure, takes=("part",))
 PDF = ExportKind("pdf", "drawing of the networks", (".pdf",), _figure, takes=("part",))
-LATEX = ExportKind("latex", "drawing of the networks in TikZ", (".tex",), _tikz, takes=("part",))
+LATEX = ExportKind("latex", "drawing of the networks in TikZ", (".tex",), _tikz, takes=("part",), synonyms=("tikz",))

@@ -91,5 +91,10 @@ def exact(number: float) -> str:
 
 
 MATLAB = ExportKind(
-    "matlab", "matrices with names and units for MATLAB and Octave", (".mat", ".m"), _make, takes=LINEAR_MODEL
+    "matlab",
+    "matrices with names and units for MATLAB and Octave",
+    (".mat", ".m"),
+    _make,
+    takes=LINEAR_MODEL,
+    synonyms=("octave",),
 )

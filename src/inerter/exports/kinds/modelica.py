@@ -257,4 +257,11 @@ def _si(unit: str) -> str:
     return unit.replace("^", "").replace("N m", "N.m")
 
 
-MODELICA = ExportKind("modelica", "Modelica source, of parts of Modelica.Mechanics", (".mo",), _make, takes=("linear",))
+MODELICA = ExportKind(
+    "modelica",
+    "Modelica source, of parts of Modelica.Mechanics",
+    (".mo",),
+    _make,
+    takes=("linear",),
+    synonyms=("openmodelica", "dymola"),
+)

@@ -179,7 +179,12 @@ def _in_brackets(unit: str) -> str:
 
 _OPTIONS = ("inputs", "outputs", "linear", "frequencies", "indices")
 CSV = ExportKind(
-    "csv", "table of the frequency responses, of a trajectory or of a record", (".csv",), _make_csv, takes=_OPTIONS
+    "csv",
+    "table of the frequency responses, of a trajectory or of a record",
+    (".csv",),
+    _make_csv,
+    takes=_OPTIONS,
+    synonyms=("excel",),
 )
 NETCDF = ExportKind(
     "netcdf",

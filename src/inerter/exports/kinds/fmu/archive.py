@@ -195,5 +195,7 @@ _KIND = partial(
     requires="a C compiler",
     takes=("inputs", "outputs", "linear", "part", "speed", "platforms"),
 )
-FMU = _KIND("fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=partial(_make, FMI_2))
+FMU = _KIND(
+    "fmu", "FMU of FMI 2.0 for co-simulation, with its sources", make=partial(_make, FMI_2), synonyms=("simulink",)
+)
 FMU3 = _KIND("fmu3", "FMU of FMI 3.0 for co-simulation, with its sources", make=partial(_make, FMI_3))

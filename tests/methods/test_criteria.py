@@ -258,6 +258,17 @@ def test_what_the_standard_does_not_weigh_is_refused_with_what_to_do() -> None:
             it.RideComfort(ROAD, weighting=wrong)  # type: ignore[arg-type]
 
 
+def test_the_tyre_load_of_a_mechanism_is_that_of_all_tyres_unless_it_names_others() -> None:
+    car = paper_half_car(Spring(60e3) | Damper(2e3), Spring(50e3) | Damper(2e3)).mechanism()
+    for index in (it.TyreLoad(ROAD), it.DynamicLoadCoefficient(ROAD)):
+        whole, front = (index.definition(replace(car, measures=it.PerformanceOutputs(tyre_load=loads)))
+                        for loads in (None, (it.OutputWeight("tyre_front_load"),)))  # fmt: skip
+        assert whole.outputs == index.definition(car).outputs
+        assert [one.output for one in front.outputs] == ["tyre_front_load"]
+        with pytest.raises(PerformanceIndexError, match=r"Set measures\.tyre_load, such as tyre_front_load"):
+            index.definition(replace(car, measures=it.PerformanceOutputs(tyre_load=())))
+
+
 def test_travel_is_that_of_struts_at_one_wheel() -> None:
     strut = Spring(25e3) | Damper(1500.0)
     car = it.FullCar(

@@ -43,7 +43,7 @@ class DynamicLoadCoefficient:
         """Raises `PerformanceIndexError` if the mechanism has no road, names no tyre load, or if loads at rest are not
         known.
         """
-        measured = mechanism.measures.tyre_load
+        measured = mechanism.tyre_loads
         if not measured:
             return on_road(self, mechanism, (), "measures.tyre_load")
         try:

@@ -49,4 +49,4 @@ class TyreLoad:
     def definition(self, mechanism: Mechanism) -> IndexDefinition:
         """Raises `PerformanceIndexError` if the mechanism has no road or names no tyre load."""
         passed = None if self.high_pass is None else high_pass(self.high_pass)
-        return on_road(self, mechanism, mechanism.measures.tyre_load, "measures.tyre_load", passed)
+        return on_road(self, mechanism, mechanism.tyre_loads, "measures.tyre_load", passed)

@@ -288,7 +288,7 @@ def with_convention_filters(
     delays = [path.delay for path in definition.input_paths(definition.drive.excited_mechanism(mechanism))]
     if np.ptp(delays) == 0.0:
         return definition
-    loads = {weighted.output for weighted in mechanism.measures.tyre_load}
+    loads = {weighted.output for weighted in mechanism.tyre_loads}
     filters = tuple(
         conventions.load_filter if own is None and weighted.output in loads else own
         for weighted, own in zip(definition.outputs, definition.filters, strict=True)

@@ -181,16 +181,16 @@ class OutputWeight:
 
 @dataclass(frozen=True)
 class PerformanceOutputs:
-    """Performance outputs of each index; empty where the mechanism has none.
+    """Performance outputs of each index; empty where the mechanism has none; tyre loads are by default those of all.
 
     >>> import inerter as it
-    >>> outputs = it.PerformanceOutputs(comfort=(it.OutputWeight("cab_acceleration"),))
-    >>> outputs.tyre_load  # none: TyreLoad is refused
+    >>> outputs = it.PerformanceOutputs(tyre_load=())
+    >>> outputs.comfort  # none: RideComfort is refused, and so is TyreLoad
     ()
     """
 
     comfort: tuple[OutputWeight, ...] = ()  # body accelerations [m/s^2 after weighting]
-    tyre_load: tuple[OutputWeight, ...] = ()  # dynamic tyre forces [N]
+    tyre_load: tuple[OutputWeight, ...] | None = None  # dynamic tyre forces [N]; None: of all tyres
     load_input: str | None = None  # the external force of the load-carrying index
     load_output: str | None = None  # the displacement under that force
 
@@ -278,6 +278,12 @@ class Mechanism:
             return self
         tyres = tuple(replace(tyre, road=on[tyre.road]) for tyre in self.tyres)
         return replace(self, tyres=tyres, roads=tuple(road for road in self.roads if road.name in on.values()))
+
+    @property
+    def tyre_loads(self) -> tuple[OutputWeight, ...]:
+        """Outputs of the dynamic tyre load, those of all tyres unless `measures` names some."""
+        given = self.measures.tyre_load
+        return tuple(OutputWeight(f"{tyre.name}_load") for tyre in self.tyres) if given is None else given
 
     @property
     def masses(self) -> dict[int, Coordinate]:
@@ -383,9 +389,10 @@ def check_quantity(what: str, value: object, unit: str) -> None:
 def _check_measures(measures: object) -> None:
     if not isinstance(measures, PerformanceOutputs):
         raise MechanismError(f"The measures of a mechanism must be PerformanceOutputs(...), got {measures!r}.")
-    if not isinstance(measures.comfort, tuple) or not isinstance(measures.tyre_load, tuple):
+    loads = () if measures.tyre_load is None else measures.tyre_load
+    if not isinstance(measures.comfort, tuple) or not isinstance(loads, tuple):
         raise MechanismError(f"The outputs of measures must be tuples of OutputWeight(...), got {measures!r}.")
-    for output in (*measures.comfort, *measures.tyre_load):
+    for output in (*measures.comfort, *loads):
         if not isinstance(output, OutputWeight) or not isinstance(output.output, str) or not is_number(output.weight):
             raise MechanismError(f"A measure must be OutputWeight(output name, number), got {output!r}.")
 

@@ -116,7 +116,7 @@ def _parts(mechanism: Mechanism) -> Tables:
         },
         "measures": {
             "comfort": {one.output: one.weight for one in measures.comfort},
-            "tyre_load": {one.output: one.weight for one in measures.tyre_load},
+            "tyre_load": {one.output: one.weight for one in mechanism.tyre_loads},
             "load_input": measures.load_input,
             "load_output": measures.load_output,
         },

@@ -147,7 +147,7 @@ def _without_seat(table: VehicleTable) -> dict[str, Any]:
 def _mechanism(table: VehicleTable, networks: Networks) -> Mechanism:
     """Mechanism of the tables of its parts."""
     given = table["measures"]
-    loads = {f"{name}_load": 1.0 for name in table["tyres"]} if given["tyre_load"] is None else given["tyre_load"]
+    loads = given["tyre_load"]
     ends = {n: (_floats(s["upper"]), _floats(s["lower"])) for n, s in table["struts"].items()}
     return Mechanism(
         tuple(Coordinate(name, one.value, is_angle(one)) for name, one in table["coordinates"].items()),
@@ -157,7 +157,7 @@ def _mechanism(table: VehicleTable, networks: Networks) -> Mechanism:
         tuple(Force(name, _floats(port)) for name, port in table["forces"].items()),
         PerformanceOutputs(
             tuple(OutputWeight(output, float(weight)) for output, weight in given["comfort"].items()),
-            tuple(OutputWeight(output, float(weight)) for output, weight in loads.items()),
+            None if loads is None else tuple(OutputWeight(output, float(weight)) for output, weight in loads.items()),
             given["load_input"],
             given["load_output"],
         ),

@@ -114,13 +114,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Table:
-    """Table with its caption; its first column contains the labels of the rows."""
+    """Table with its caption; its first columns, `labels` in number, contain the labels of the rows."""
 
     caption: str
     columns: Sequence[Column]
     rows: Sequence[Row]
     swept: bool = False
     failures: Sequence[str] = field(default=())
+    labels: int = 1
 
     @property
     def shown(self) -> list[Column]:

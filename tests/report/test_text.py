@@ -42,6 +42,18 @@ def test_tables_fit_a_terminal(names, value, swept, message):
         assert name in text
 
 
+@pytest.mark.parametrize("width", [40, 50, 60, 70, WIDTH])
+def test_every_part_of_a_table_has_the_labels_of_its_rows(width):
+    heads = columns("Layout", "Index", "Method", "First", "Second", "Third", "Fourth")
+    keys = [(layout, index, method) for layout in ("S1", "S2") for index in ("J1", "J3") for method in METHODS[:2]]
+    rows = [Row(cells(*key, *(f"{i}{j}.000 kN s/m" for j in range(4)))) for i, key in enumerate(keys)]
+    lines = list(table_lines(Table("", heads, rows, labels=3), width))
+    for i, key in enumerate(keys):
+        for number in range(4):
+            at = next(n for n, line in enumerate(lines) if f"{i}{number}.000" in line)
+            assert " ".join(key) in " ".join(" ".join(lines[max(at - 1, 0) : at + 1]).split())
+
+
 def test_a_name_keeps_its_letters():
     text = fitting(designs(["weich", "härter", "härtér"], baseline="weich"), "äé")
     assert all(f"  {name} " in text for name in ("weich", "härter", "härtér"))

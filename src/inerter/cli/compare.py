@@ -91,4 +91,4 @@ def _table(found: ResultComparison, shown: list[ValueChange]) -> Table:
             for name, both in one.parameters.items()
         ]
         rows.append(Row(cells(one.layout, one.index, *named, *values, *changed, ", ".join(variables))))
-    return Table("Values, the largest change first", heads, rows)
+    return Table("Values, the largest change first", heads, rows, labels=2 + has_points + has_methods)

@@ -44,7 +44,7 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
     Columns that are listed become items "heading = text" of the last one. The reason for a doubt stands below its row.
     """
     yield from wrap(table.caption, width, subsequent_indent=_GAP * 2)
-    grid, labels, keys = _with_labels(_grid(table), width)
+    grid, labels, keys = _with_labels(_grid(table), width, table.labels)
     if not grid.columns[keys:]:
         yield from _lines(grid, labels, width)
     while grid.columns[keys:]:
@@ -110,22 +110,23 @@ def _item(column: Column, cell: Cell) -> str:
     return f"{column.heading} = {cell.text}{f' ({cell.remark})' if cell.remark else ''}"
 
 
-def _with_labels(grid: _Grid, width: int) -> tuple[_Grid, list[str], int]:
+def _with_labels(grid: _Grid, width: int, count: int) -> tuple[_Grid, list[str], int]:
     """Grid whose labels leave room for its numbers, all labels, and the number of columns before every part of it.
 
-    These are two where labels repeat; labels without room in the first column stand on a line above each row.
+    These are `count` where labels repeat, two at least; labels without room stand on a line above each row.
     """
     first, *others = grid.columns
     labels = [text for text, _ in first.cells]
     if _total_width(grid.columns, cut_headings=True) > width:
         first = first.with_short_labels()
     keyed = replace(grid, columns=[first, *others])
-    if len(set(labels)) == len(labels) or not others[1:] or others[0].wraps:
+    keys, numbers = others[: max(count, 2) - 1], others[max(count, 2) - 1 :]
+    if len(set(labels)) == len(labels) or not numbers or any(column.wraps for column in keys):
         return keyed, labels, 1
-    if all(_total_width([first, others[0], one], cut_headings=True) <= width for one in others[1:]):
-        return keyed, labels, 2
-    labels = [f"{label}{_GAP}{key}" for label, (key, _) in zip(labels, others[0].cells, strict=True)]
-    return replace(grid, columns=[first.with_short_labels(0), *others[1:]]), labels, 1
+    if all(_total_width([first, *keys, one], cut_headings=True) <= width for one in numbers):
+        return keyed, labels, 1 + len(keys)
+    whole = zip(labels, *([text for text, _ in column.cells] for column in keys), strict=True)
+    return replace(grid, columns=[first.with_short_labels(0), *numbers]), [_GAP.join(one) for one in whole], 1
 
 
 def _count_fitting(grid: _Grid, width: int) -> int:

@@ -92,7 +92,7 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
                 f"{format_count(smaller.n_elements, 'elements')} and is {behind} worse"
             )
         yield (
-            f"{capital(one.heading)}: {best.layout} is the best of {one.result.n_networks} networks, "
+            f"{capital(one.heading)}: {best.layout} is the best of {format_count(one.result.n_networks, 'networks')}, "
             f"{format_quantity(best.value, best.unit)}{against}{near}."
         )
         unsupported = [each for each in networks_shown(one) if lacks_equilibrium(each.design.mechanism())]
@@ -136,9 +136,9 @@ def _real_sentences(found: StudySearch, one: LayoutSearch) -> Iterator[str]:
         against = _comparison(Improvement(gain, bound=one.real_gain_bound(best)), found.study.baseline)
         doubts = ["" if best.ok else best.status_text, one.real_gain_status(best).doubt if isfinite(gain) else ""]
         doubt = "; ".join(text.rstrip(".") for text in doubts if text)
+        of = f" is the best of {len(own)} networks" if len(own) > 1 else ""
         yield (
-            f"{capital(one.heading)} with real inerters ({brief_words_of(method)}): {best.network} is the best of "
-            f"{format_count(len(own), 'networks')}, "
+            f"{capital(one.heading)} with real inerters ({brief_words_of(method)}): {best.network}{of}, "
             f"{format_quantity(best.value, one.result.unit, bound=best.error_bound)}{against}"
             f"{doubt and f' ({doubt})'}."
         )
@@ -258,9 +258,8 @@ def _computation(found: StudySearch) -> Iterator[str]:
     if study.real_inerters is not None:
         real = study.real_inerters
         yield (
-            f"Real inerters have friction of {format_quantity(real.friction, 'N')} and a shaft of "
-            f"{format_quantity(real.stiffness, 'N/m')} with {format_quantity(real.damping, 'N s/m')}; the values were "
-            f"optimised once more by {format_list([brief_words_of(name) for name in real.methods])}. Gain and retained "
+            f"Real inerters are those {real.description}; the values were optimised once more by "
+            f"{format_list([brief_words_of(name) for name in real.methods])}. Gain and retained "
             "gain compare with the baseline by the same method."
         )
     if study.road is not None:

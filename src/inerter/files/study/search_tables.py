@@ -240,7 +240,8 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
             one.real_gain_status(each).doubt,
         ]
         rows.append(Row(cells(*content), status="; ".join(filter(None, doubts))))
-    return Table(f"{capital(one.heading)}: the best networks with real inerters", heads, rows)
+    which = f"the best networks, their inerters {study.real_inerters.description}"
+    return Table(f"{capital(one.heading)} with real inerters: {which}", heads, rows)
 
 
 def real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
@@ -292,7 +293,7 @@ def at_bound_notes(one: LayoutSearch) -> Iterator[str]:
     for found in networks_shown(one):
         if found.active_bounds:
             ends = ", ".join(f"{name} at its {end} bound" for name, end in found.active_bounds.items())
-            yield f"{found.layout} has {ends}{f', so {found.simpler} does as well' if found.simpler else ''}"
+            yield f"{found.layout} has {ends}{f', so {found.simpler} is equally good' if found.simpler else ''}"
 
 
 def _parameters(found: Iterable[FoundNetwork | FrontNetwork | RealResult]) -> list[str]:

@@ -52,6 +52,7 @@ from inerter.files.study.limits import LimitsCodec, StudyLimit
 from inerter.files.study.own_indices import indices_of, own_indices_codec
 from inerter.files.study.place import ELEMENTS, Sweep, place_of
 from inerter.files.study.task_registry import TASKS
+from inerter.formatting import format_quantity
 from inerter.indices.registry import index_settings
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import DEFAULT, METHODS, methods_that, searches, with_gradients
@@ -225,6 +226,14 @@ class RealInerters:
         "best = 3",
         default=3,
     )
+
+    @property
+    def description(self) -> str:
+        """Friction and shaft, after "real inerters"."""
+        return (
+            f"with friction of {format_quantity(self.friction, 'N')} and a shaft of "
+            f"{format_quantity(self.stiffness, 'N/m')} with {format_quantity(self.damping, 'N s/m')}"
+        )
 
     @property
     def methods(self) -> tuple[str, ...]:

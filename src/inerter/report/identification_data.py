@@ -111,17 +111,14 @@ def _record(reading: Reading, comparison: RecordFit) -> dict[str, Any]:
         "highest": motion.highest,
         "lead": comparison.lead,
         "offset": comparison.offset,
-        "fitted": {
-            "samples": int(comparison.fitted.sum()),
-            "rms": comparison.rms(),
-            "sound": comparison.noise_level(),
-            "explained": comparison.variance_explained(),
-        },
-        "checked": {
-            "samples": int(comparison.checked.sum()),
-            "rms": comparison.rms(True),
-            "sound": comparison.noise_level(True),
-            "explained": comparison.variance_explained(True),
+        **{
+            part: {
+                "samples": int(mask.sum()),
+                "rms": comparison.rms(check),
+                "sound": comparison.noise_level(check),
+                "explained": comparison.variance_explained(check),
+            }
+            for part, check, mask in (("fitted", False, comparison.fitted), ("checked", True, comparison.checked))
         },
         "whiteness": comparison.whiteness,
         "openings": dict(comparison.openings),

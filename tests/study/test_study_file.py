@@ -477,6 +477,8 @@ BAD = {
     "simulation": ([("[study]", "[signal]\n[study]")], "signal", ["unknown key", "inerter simulate"]),
     "model number": ([('"quarter-car"', "4")], "vehicle.model", ["got 4", "available in this version"]),
     "title": ([('"A quarter car"', '" "')], "title", ["expected text"]),
+    "title with a null": ([('"A quarter car"', '"a\\u0000b"')], "title", ["contains a control character"]),
+    "title that colours a terminal": ([('"A quarter car"', '"\\u001b[31m"')], "title", ["a control character"]),
     # settings
     "index": ([('"J3", "J1"', '"J3", "J2"')], "study.indices", ['"J2"', '"J1", "J3", "J5"', "this version"]),
     "index twice": ([('"J3", "J1"', '"J3", "J3"')], "study.indices", ['"J3"', "more than once"]),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
+from unicodedata import category
 
 from inerter.field_metadata import Field, TextChoice
 from inerter.files.common.codec import (
@@ -279,6 +280,8 @@ def text(value: Any) -> str:
     """A title or a name."""
     if not isinstance(value, str) or not value.strip() or len(value) > 200:
         raise invalid_entry(value, expected='text of 1 to 200 characters in quotes, such as "My car"')
+    if any(category(character) == "Cc" and not character.isspace() for character in value):
+        raise invalid_entry(value, fault="contains a control character", expected="printable characters")
     return value
 
 

@@ -78,7 +78,10 @@ def modes(A: Array, scale: Array) -> Any:
 
 @part()
 def respond(system: Array, basis: Array, omega: float, phases: Array, state: Array, out: Array, room: Array) -> bool:
-    """Fill `state` with the amplitudes of modes, or where there are none of states, and `out` with the outputs."""
+    """Fill `state` with the amplitudes of modes, or where there are none of states, and `out` with the outputs.
+
+    False at the frequency of a pole on the imaginary axis, where compiled code raises an error by dividing.
+    """
     A, _, _, D, scale = system
     poles, B, C, is_modal = basis
     M, pivots = room
@@ -89,7 +92,10 @@ def respond(system: Array, basis: Array, omega: float, phases: Array, state: Arr
             state[i] += B[i, c] * phases[c]
     if is_modal:
         for k in range(n):
-            state[k] /= 1j * omega - poles[k]
+            away = 1j * omega - poles[k]
+            if away == 0.0:
+                return False
+            state[k] /= away
     else:
         if not factor_resolvent(A, scale, omega, M, pivots):
             return False
@@ -131,7 +137,8 @@ def basis_of(system: Array, arrivals: Array, room: Array) -> Any:
             fill_phases(abs(pole), arrivals, phases)
             if not respond(system, plain, abs(pole), phases, state, one, room):
                 return plain, vectors, inverse
-            respond(system, modal, abs(pole), phases, state, other, room)
+            if not respond(system, modal, abs(pole), phases, state, other, room):
+                return plain, vectors, inverse
             for r in range(o):
                 apart[r] = max(apart[r], abs(one[r] - other[r]))
                 largest[r] = max(largest[r], abs(one[r]))

@@ -61,8 +61,13 @@ def test_what_was_cut_short_anywhere_is_whole_lines(tmp_path: Path) -> None:
 
 def test_a_journal_of_other_work_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     journal = written(tmp_path / "j", ENTRIES)
-    with pytest.raises(StudyError, match="another study"):
+    with pytest.raises(StudyError, match=r'another study or version \(study "this" there, "that" here\)'):
         list(Journal(journal.path, {"study": "that"}).read())
+    more = {"study": {"seed": 1, **dict.fromkeys("abcd", 2)}}
+    with pytest.raises(
+        StudyError, match=r"\(study\.seed not set there, 1 here, .*study\.c not set there, 2 here and 2 more\)"
+    ):
+        list(Journal(journal.path, more).read())
     monkeypatch.setattr(journals, "origin", lambda: "corrected")
     with pytest.raises(StudyError, match="sources or numerical libraries"):
         list(journal.read())

@@ -217,7 +217,7 @@ def test_a_profile_that_has_changed_is_another_study(load, tmp_path):
     assert run_study(load(**text), folder, resume=True).computed == 0
     before = (folder / "summary.csv").read_bytes()
     write_profile(tmp_path / "road.csv", 1.001 * heights(1), heights(2))
-    with pytest.raises(StudyError, match="another study"):
+    with pytest.raises(StudyError, match=r'another study or version \(road\.roughness ".*" there, ".*" here\)'):
         run_study(load(**text), folder, resume=True)
     assert (folder / "summary.csv").read_bytes() == before
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 from math import hypot
@@ -22,6 +22,7 @@ from inerter.files.study.results import units_by_name
 from inerter.files.study.running import RESOLVED
 from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.statements import Severity, Statement
+from inerter.work.journal import leaves
 
 _EQUAL = 2e-9  # relative difference of equally good values
 _COMMON = ("layout", "index", "method")
@@ -181,16 +182,8 @@ def _entry_changes(first: Path, second: Path) -> Iterator[EntryChange]:
     entries = []
     for folder in (first, second):
         check_unchanged(folder, RESOLVED)
-        entries.append(dict(_flat(load_study(folder / RESOLVED).to_tables())))
+        entries.append(dict(leaves(load_study(folder / RESOLVED).to_tables())))
     for place in dict.fromkeys([*entries[0], *entries[1]]):
         one, two = (of.get(place) for of in entries)
         if one != two and place not in _WITHOUT_EFFECT:
             yield EntryChange(place, one, two)
-
-
-def _flat(tables: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]]:
-    for key, entry in tables.items():
-        if isinstance(entry, Mapping):
-            yield from _flat(entry, f"{place}{key}.")
-        else:
-            yield f"{place}{key}", entry

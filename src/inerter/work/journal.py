@@ -20,18 +20,20 @@ from typing import Any
 
 from inerter.atomic_io import atomic_write
 from inerter.errors import StudyError, WorkError
+from inerter.formatting import format_some
+from inerter.units import quote_value
 from inerter.work.origin import VERSION, origin
 
 FORMAT = 2
 _LINE = re.compile(rb'(\{.*), "check": "([0-9a-f]{16})"\}')
 _CHECK = re.compile(rb'"check": "([0-9a-f]{16})"\}\n\Z')
+_MOST = 4  # differences in a message
 _LONGEST_END = 64  # bytes in which a check sum and the end of its line are
 _decoded = json.JSONDecoder().decode
 _AWAY = "Move it away, or choose another folder with -o."
 _WORDS = {
     "format": "another format",
     "inerter": "another version of inerter",
-    "study": "another study file",
     "numbers": "other sources or numerical libraries",
 }
 Entry = dict[str, Any]
@@ -39,10 +41,10 @@ Entry = dict[str, Any]
 
 @dataclass(frozen=True)
 class Journal:
-    """A file of completed work, and `about`: the properties that must agree for reuse."""
+    """A file of completed work, and `about`: the properties that must agree for reuse, as JSON has them."""
 
     path: Path
-    about: Mapping[str, str]
+    about: Mapping[str, Any]
 
     def read(self) -> Iterator[Entry]:
         """Entries, one by one; empty without a journal. A truncated last line is ignored.
@@ -159,8 +161,27 @@ def _check(body: bytes, before: str) -> str:
 
 
 def _differences(found: Entry, wanted: Entry) -> str:
-    return ", ".join(
-        _WORDS.get(key) or f"{key} {found.get(key)!r} there, {value!r} here"
-        for key, value in wanted.items()
-        if found.get(key) != value
-    )
+    there, here = (dict(leaves(entry)) for entry in (found, wanted))
+    told = [
+        _WORDS.get(key) or f"{key} {_entry(there.get(key))} there, {_entry(here.get(key))} here"
+        for key in {**here, **there}
+        if there.get(key) != here.get(key)
+    ]
+    return format_some(told, _MOST)
+
+
+def _entry(value: object) -> str:
+    return "not set" if value is None else quote_value(value)
+
+
+def leaves(tables: Mapping[str, Any], place: str = "") -> Iterator[tuple[str, Any]]:
+    """Entries of nested tables by their key paths.
+
+    >>> dict(leaves({"road": {"speed": "25 m/s"}, "seed": 0}))
+    {'road.speed': '25 m/s', 'seed': 0}
+    """
+    for key, entry in tables.items():
+        if isinstance(entry, Mapping):
+            yield from leaves(entry, f"{place}{key}.")
+        else:
+            yield f"{place}{key}", entry

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,8 +19,7 @@ NAME = "journal.jsonl"
 
 def journal_of(study: Study, path: Path) -> Journal:
     """Journal at `path`, valid for this study only."""
-    text = json.dumps(study.to_tables(), sort_keys=True)
-    return Journal(path, {"title": study.title, "study": hashlib.sha256(text.encode()).hexdigest()})
+    return Journal(path, json.loads(json.dumps(study.to_tables(), sort_keys=True)))
 
 
 def results_of(journal: Journal) -> Iterator[PartResult | Checkpoint]:

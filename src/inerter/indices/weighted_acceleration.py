@@ -44,11 +44,11 @@ class WeightedAcceleration:
 def frequency_weight(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") -> WeightedAcceleration:
     """An acceleration [m/s^2] at even steps of `time` [s] through a weighting of ISO 2631-1, from rest.
 
-    `run.time` and `run["sprung_acceleration"]` of a simulation will do, and so will the columns of a record. The mean
-    is taken away first if it is more than a twentieth of the standard deviation and the record begins nearer to it
-    than to zero, since a sensor that reads gravity would begin with a step; `constant` has it. A shock or a braking
-    from rest has a mean too, and stays as it is. The acceleration is taken as linear between its samples, which
-    therefore come some ten times in the shortest wave that matters: that of 100 Hz, of 0.63 Hz with "Wf".
+    The arguments may be `run.time` and `run["sprung_acceleration"]` of a simulation, or the columns of a record. A mean
+    of more than a twentieth of the standard deviation is subtracted first, and returned as `constant`, if the record
+    begins nearer to it than to zero: gravity in the signal of a sensor would otherwise act as a step. The mean of a
+    shock or of braking from rest is kept. The acceleration is interpolated linearly between its samples; ten samples
+    in the shortest period that matters, that of 100 Hz (with "Wf" of 0.63 Hz), are therefore necessary.
 
     Raises `PerformanceIndexError` for another weighting, for steps that are not even, for values that are no finite
     numbers, and for less than 1 s.

@@ -28,7 +28,7 @@ class _Sender:
 
     def tell(self, step: ProgressStep) -> None:
         self.step, self.evaluations = step, step.evaluations
-        if step.over and not self.sent:  # nobody knows that it began
+        if step.over and not self.sent:  # its beginning was not sent either
             return
         if step.over or time.monotonic() - self.told >= _OFTEN:
             self.told, self.sent = time.monotonic(), not step.over

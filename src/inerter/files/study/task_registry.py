@@ -11,7 +11,7 @@ from inerter.registry import Registry
 class TaskEntry:
     """Task: its class as module:class, imported when a study uses the task, and the keys of [study] that belong to it.
 
-    `keys` is a declared class; what a file says of it is `study.tasks[key]`.
+    `keys` is a class whose fields declare those keys; its instance with the values of a file is `study.tasks[key]`.
 
     >>> import inerter as it
     >>> it.TASKS["tolerances"].key

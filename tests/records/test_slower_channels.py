@@ -60,6 +60,44 @@ def test_readings_are_found(way: str, every: int, first: int, step: float) -> No
     assert (found.first, found.every, found.way) == (first, every, way)
 
 
+def read_at(at: Vector) -> Vector:
+    """The motion at any positions among the samples."""
+    phases = 2.0 * np.pi * np.multiply.outer(at / RATE, [f for _, f, _ in TONES]) + [p for *_, p in TONES]
+    return np.asarray(np.cos(phases) @ [a for a, *_ in TONES])
+
+
+@pytest.mark.parametrize("step", [0.0, 1e-6])
+@pytest.mark.parametrize(
+    ("way", "every", "first"),
+    [
+        ("held", 5 / 3, 0.0),
+        ("held", 10 / 3, 0.0),
+        ("held", 3.57, 1.3),
+        ("interpolated", 10 / 3, 1.7),
+        ("interpolated", 7.8125, 0.0),
+    ],
+)
+def test_readings_are_found_at_a_rate_that_no_whole_number_divides(
+    way: str, every: float, first: float, step: float
+) -> None:
+    """A recorder of 1000 Hz that merges a channel of 300 Hz has a reading each three or four samples."""
+    random = np.random.default_rng(7)
+    at = np.arange(first - 2.0 * every, SIZE + every, every)
+    readings = read_at(at) + 3e-7 * random.standard_normal(at.size)
+    readings = step * np.rint(readings / step) if step else readings
+    samples = np.arange(SIZE)
+    held = readings[np.searchsorted(at, samples + 1e-9) - 1]
+    values = held if way == "held" else np.interp(samples, at, readings)
+    found = slower_channel(values)
+    assert found is not None
+    assert found.way == way
+    assert found.every == pytest.approx(every, rel=1e-4)
+    assert abs((found.first - first + 0.5 * every) % every - 0.5 * every) < (0.1 if way == "interpolated" else 0.35)
+    np.testing.assert_allclose(found.readings(values), np.interp(found.positions(SIZE), at, readings), atol=5e-6)
+    merged = it.Record(TIME, values, np.cumsum(random.standard_normal(SIZE)))
+    assert repair(merged).interval == pytest.approx(every / RATE, rel=1e-4)
+
+
 NATURAL = {
     "noise": np.random.default_rng(1).standard_normal(SIZE),
     "steps of an encoder": 1e-5 * np.rint(1e5 * moved(0)),

@@ -23,7 +23,7 @@ from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
 from inerter.identification.parameter_space import Space, space_of
 from inerter.identification.problem import FitProblem, map_problems
-from inerter.identification.recording_faults import faulty_samples, recording_faults
+from inerter.identification.recording_faults import as_measured, faulty_samples, recording_faults
 from inerter.identification.residual_tests import NoiseReference
 from inerter.identification.search import improve
 from inerter.identification.statements.causes import Suspect
@@ -246,7 +246,7 @@ def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:
         for other, measured in whole.values():
             if other.record is e.record:
                 doubtful = np.convolve(~measured, np.ones(2 * _BESIDE + 1), "same") > 0.0
-                return np.where(doubtful, other.record.force, force)[measured]
+                return as_measured(force, other.record.force, doubtful[: force.size])[measured[: force.size]]
         return force
 
     return Hypothesis(

@@ -23,8 +23,8 @@ from inerter.identification.statements.causes import Details, Suspect
 from inerter.identification.statements.patterns import MisfitPattern
 from inerter.records.instants import Instant
 from inerter.records.record import Record
-from inerter.records.repair import faulty_instants, repair
-from inerter.records.slower_channels import slower_channel
+from inerter.records.repair import faulty_instants, without_faulty_samples
+from inerter.records.slower_channels import SlowerChannel, slower_channel
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -271,7 +271,7 @@ def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
     for name, kind in kinds:
         marked = {id(e.record): [i for role in getattr(f, kind).values() for i in role] for e, f in found}
         if any(marked.values()):
-            rows.append(_repair_hypothesis(name, experiments, marked, repair, _MARGIN))
+            rows.append(_repair_hypothesis(name, experiments, marked, without_faulty_samples, _MARGIN))
     joints = {id(e.record): f.joints for e, f in found}
     if any(joints.values()):
         rows.append(
@@ -286,36 +286,44 @@ def _at_readings(experiments: Sequence[Experiment]) -> Hypothesis | None:
     A spline goes through the readings of the displacement.
     """
     whole: dict[int, Experiment] = {}
-    read_at: dict[int, Mask] = {}
-    channels: list[tuple[str, int, str]] = []
+    read_at: dict[int, SlowerChannel] = {}
+    channels: list[tuple[str, float, str]] = []
     for e in experiments:
         record = e.record
         moved, forced = slower_channel(record.displacement), slower_channel(record.force)
         channels += [(n, s.every, s.way) for n, s in (("displacement", moved), ("force", forced)) if s is not None]
         if moved is not None:
-            times = record.time[moved.readings]
-            through = CubicSpline(times, record.displacement[moved.readings])(np.clip(record.time, times[0], times[-1]))
+            at = moved.positions(e.size)
+            read_off = CubicSpline(at, moved.readings(record.displacement))
+            through = read_off(np.clip(np.arange(e.size), at[0], at[-1]))
             mended = experiment_of(record.with_notes(displacement=through), rigid=e.rigid)
             whole[id(record)] = replace(mended, record=record, kept=e.kept, tally=e.tally)
         if forced is not None:
-            mask = np.zeros(e.size, dtype=bool)
-            mask[forced.readings] = True
-            read_at[id(record)] = mask
+            read_at[id(record)] = forced
 
     def change_motion(e: Experiment, values: Values) -> Experiment:
         return whole.get(id(e.record), e)
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        mask = read_at.get(id(e.record))
-        if mask is None:
+        channel = read_at.get(id(e.record))
+        if channel is None:
             return force
-        mask, left = mask[: force.size], e.record.force[: force.size] - force
-        offset = float(np.mean(left[mask]))  # of the load cell, as at the readings
-        return np.where(mask, force, force + left - offset)
+        at = channel.positions(force.size)
+        mask = np.zeros(force.size, dtype=bool)
+        mask[np.minimum(np.ceil(at - 1e-3).astype(int), force.size - 1)] = True
+        given = channel.recorded(np.interp(at, np.arange(force.size), force), force.size)
+        return as_measured(given, e.record.force, ~mask)
 
     named = {"channels": tuple(dict.fromkeys(channels))}
     hypothesis = Hypothesis(Suspect.SLOWER, change_motion=change_motion, read=read, details=lambda values: named)
     return hypothesis if channels else None
+
+
+def as_measured(force: Matrix, measured: Matrix, doubtful: Mask) -> Matrix:
+    """The force with the measured one, less the offset of the load cell at all others, at samples not to compare."""
+    left = measured[: force.size] - force
+    offset = float(np.mean(left[~doubtful])) if not doubtful.all() else 0.0
+    return np.where(doubtful, force + left - offset, force)
 
 
 def _repair_hypothesis(
@@ -347,7 +355,7 @@ def _repair_hypothesis(
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
         mask = doubtful.get(id(e.record))
-        return force if mask is None else np.where(mask[: force.size], e.record.force[: force.size], force)
+        return force if mask is None else as_measured(force, e.record.force, mask[: force.size])
 
     details = {"times": tuple(places[:6]), "count": len(places)}
     return Hypothesis(name, change_motion=change_motion, read=read, details=lambda values: details)

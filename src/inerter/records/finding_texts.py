@@ -85,8 +85,8 @@ def _held_values_text(f: Finding) -> Text:
 def _slower_channel_text(f: Finding) -> Text:
     n = f.numbers
     return (
-        f"The {f.about} was measured at one sample in {n['every']} only, and {n['way']} in between. Record both "
-        f"channels at one rate, or keep the measured samples alone, ",
+        f"The {f.about} was measured at one sample in {format_number(n['every'], 4)} only, and {n['way']} in between. "
+        f"Record both channels at one rate, or keep the measured samples alone, ",
         *(Remedy(Action.REPAIR), "."),
     )
 

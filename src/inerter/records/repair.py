@@ -81,7 +81,11 @@ def repair(record: Record) -> Record:
 
     Joints between pieces are kept.
     """
-    record = at_readings(record)
+    return without_faulty_samples(at_readings(record))
+
+
+def without_faulty_samples(record: Record) -> Record:
+    """The record with spikes and held values interpolated by cubic splines."""
     faulty = faulty_instants(record)
     changes, notes = {}, []
     for role in _ROLES:

@@ -263,7 +263,7 @@ class Suspect(StrEnum):
     SLOWER = (
         "channel at a lower rate",
         lambda d: " and ".join(
-            f"the {role} was measured at one sample in {every} only, and {way} in between"
+            f"the {role} was measured at one sample in {format_number(every, 4)} only, and {way} in between"
             for role, every, way in d["channels"]
         ),
         ("record both channels at one rate, or keep the measured samples alone, ", Remedy(Action.REPAIR)),

@@ -1,0 +1,66 @@
+"""Samples that a hypothesis on the recorder replaces are not compared, whatever the offset of the load cell."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from quick_fits import quick_fit
+from rigid_fits import rigid_record
+
+import inerter as it
+from inerter.identification.diagnosis import lost_samples
+from inerter.identification.intervals import best_fit_of
+from inerter.identification.models import MODELS
+from inerter.identification.recording_faults import faulty_samples
+from inerter.identification.statements.causes import Suspect
+
+Matrix = NDArray[np.float64]
+
+
+def with_fault(fault: Suspect, offset: float) -> it.Record:
+    """80 kg with 12 N of friction, with 12 spikes, held values or places where samples were dropped."""
+    record, _ = rigid_record(duration=2.0)
+    record = replace(record, force_noise=0.15)
+    at = 60 + 150 * np.arange(12)
+    z, force = record.displacement.copy(), record.force + offset
+    if fault is Suspect.SPIKES:
+        force[at] += 400.0
+    elif fault is Suspect.HELD:
+        for n in at:
+            z[n : n + 9], force[n : n + 9] = z[n], force[n]
+    else:
+        kept = np.ones(z.size, dtype=bool)
+        for n in at[::3]:
+            kept[n : n + 9] = False
+        return replace(record, time=record.time[: kept.sum()], displacement=z[kept], force=force[kept])
+    return replace(record, displacement=z, force=force)
+
+
+def fitted_under(record: it.Record, fault: Suspect) -> tuple[Matrix, Matrix, float]:
+    """Values under the hypothesis, their standard errors, and the normalised residual."""
+    solution = quick_fit(record, MODELS["friction"], {"b": 80.0, "f": 12.0})
+    lost = lost_samples(solution.problem.experiments)
+    every = [*faulty_samples(solution.problem.experiments), *([] if lost is None else [lost])]
+    (suspect,) = [h for h in every if h.name is fault]
+    problem = replace(solution.problem, assumed=(suspect,), systems={})
+    best = best_fit_of(problem, solution.optimum.point, evaluations=20)
+    slopes = problem.space.slopes(best.point)
+    return problem.space.to_values(best.point), best.errors * slopes, solution.judge.misfit(problem, best.point).worst
+
+
+@pytest.mark.parametrize("fault", [Suspect.SPIKES, Suspect.HELD, Suspect.LOST_SAMPLES])
+def test_an_offset_of_the_load_cell_changes_no_values_under_replaced_samples(fault: Suspect) -> None:
+    centred, errors, misfit = fitted_under(with_fault(fault, 0.0), fault)
+    shifted, _, other = fitted_under(with_fault(fault, 3000.0), fault)
+    assert other == pytest.approx(misfit, rel=0.02)
+    assert np.all(np.abs(shifted - centred) < 0.2 * errors)
+
+
+def test_faulty_samples_of_a_channel_at_a_lower_rate_are_interpolated_at_the_rate_of_the_record() -> None:
+    """A record at the readings alone has fewer samples than the forces that it is compared with."""
+    record = with_fault(Suspect.SPIKES, 0.0)
+    slow = replace(record, displacement=np.repeat(record.displacement[::4], 4)[: record.time.size])
+    assert fitted_under(slow, Suspect.SLOWER)[2] < fitted_under(slow, Suspect.SPIKES)[2] < np.inf

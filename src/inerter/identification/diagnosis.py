@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import partial
 
 import numpy as np
@@ -23,7 +24,7 @@ from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
 from inerter.identification.parameter_space import Space, space_of
 from inerter.identification.problem import FitProblem, map_problems
-from inerter.identification.recording_faults import as_measured, faulty_samples, recording_faults
+from inerter.identification.recording_faults import as_measured, faulty_samples, nonlinear_load_cells, recording_faults
 from inerter.identification.residual_tests import NoiseReference
 from inerter.identification.search import improve
 from inerter.identification.statements.causes import Suspect
@@ -47,9 +48,18 @@ _LITTLE = 0.05  # of the detectable size of an unknown: starting value
 _AS_GOOD = 0.02  # of a misfit: difference within which two explanations count as equally good
 _STEP = 0.02  # of the detectable size of an unknown, for differences
 _SEEN, _SURE = 0.1, 30.0  # of a residual that noise may hide: share that is explained, and Fisher's ratio of it
+_CLEAR = 20.0  # Fisher's ratio of a nonlinear load cell
 _LIKE = 0.5  # of the share of the best explanation of such a residual: another one
 _SHAFTS = (Suspect.ELASTIC, Suspect.RIGID, Suspect.BACKLASH)  # a stiff one also changes the errors of the simulation
 _AT_BOUND, _WIDER = 1e-3, 30.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
+
+
+class Hidden(StrEnum):
+    """Causes that a residual within sensor noise may hide."""
+
+    NONE = "none"
+    LAW = "law of the device"  # where the noise of the force, as estimated, is too large
+    LOAD_CELL = "load cell"  # changes values by more than their errors before its residual exceeds the noise
 
 
 @dataclass(eq=False)
@@ -60,16 +70,18 @@ class Causes:
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
     point: Matrix | None = None  # the best fit
-    hidden: bool = False  # whether the noise of the force, as estimated, may hide a misfit
+    hidden: Hidden = Hidden.NONE
 
     def of(self, problem: FitProblem) -> list[Hypothesis]:
         """Hypotheses of the problem; without a misfit those that the records show, or on the device if it is hidden."""
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-            if self.hidden:
+            if self.hidden is Hidden.LAW:
                 taken = (*_SHAFTS, *(h.name for h in problem.assumed))
                 known = [h for h in laws(problem) if h.name not in taken]
+            elif self.hidden is Hidden.LOAD_CELL:
+                known = nonlinear_load_cells(problem.experiments)
             elif not self.before.is_noise_limited:
                 known += hypotheses(problem, self.places)
                 known += [] if self.point is None else beyond_bounds(problem, self.point)
@@ -109,11 +121,11 @@ def explanations(
     causes = Causes(before, places, point=optimum.point)
     every = causes.of(problem)
     known = replace(problem, whitenings=by.fitted, horizon=1.0)
-    estimated = any(e.record.force_noise is None for e in problem.experiments)
-    slopes = known.jacobian(optimum.point, steps_of(optimum)) if every or estimated else np.zeros((0, 0))
-    if not every and estimated:
-        causes = replace(causes, made=None, hidden=True)
-        every = causes.of(problem) if _has_structure(known, optimum, slopes, causes.of(problem)) else []
+    slopes = known.jacobian(optimum.point, steps_of(optimum))
+    if not every:
+        hidden = (replace(causes, made=None, hidden=kind) for kind in (Hidden.LAW, Hidden.LOAD_CELL))
+        causes = next((c for c in hidden if _is_hidden(known, optimum, slopes, c)), causes)
+        every = causes.of(problem)
     rough = partial(_fit_roughly, causes, by, optimum, slopes)
     first = map_problems(
         rough, [(known, n) for n in range(len(every))], over_threads, counter("possible causes", len(every))
@@ -133,25 +145,30 @@ def explanations(
     return _rank([a.explanation for a in (*last, *first[_FITTED:])], causes.hidden)
 
 
-def _rank(every: Sequence[Explanation], hidden: bool) -> list[Explanation]:
+def _rank(every: Sequence[Explanation], hidden: Hidden) -> list[Explanation]:
     """One explanation of each name, the most likely first; of a misfit that noise hides, those that explain much."""
     found: dict[Suspect, Explanation] = {}
     for e in every:
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
     ranked = sorted(found.values(), key=_likelihood)
-    if not hidden or not ranked:
+    if hidden is Hidden.NONE or not ranked:
         return ranked
     if ranked[0].name is Suspect.FILTERED_FORCE:  # in place of a delay: intervals contain its values already
         return []
-    return [e for e in ranked if e.explained >= max(_SEEN, _LIKE * ranked[0].explained)]
+    least = _SEEN if hidden is Hidden.LAW else 0.0
+    return [e for e in ranked if e.explained > max(least, _LIKE * ranked[0].explained)]
 
 
-def _has_structure(problem: FitProblem, optimum: BestFit, slopes: Matrix, among: Sequence[Hypothesis]) -> bool:
-    """Whether a law explains, to first order, much of the residual of a fit, and surely more than chance does.
+def _is_hidden(problem: FitProblem, optimum: BestFit, slopes: Matrix, causes: Causes) -> bool:
+    """Whether one of the causes explains, to first order, some of a residual within sensor noise more than by chance.
 
-    Both are shares of the residual, so that they do not depend on the noise that is expected.
+    The share that it explains, and Fisher's ratio of it, do not depend on the noise that is expected. Of a law of the
+    device the share has to be large, where the noise is not stated; a nonlinear load cell has to change a value by more
+    than its standard error, as one that no residual shows may change it by many.
     """
+    if causes.hidden is Hidden.LAW and all(e.record.force_noise is not None for e in problem.experiments):
+        return False
     base = np.linalg.qr(slopes)[0]
 
     def project(values: Matrix) -> Matrix:
@@ -160,13 +177,20 @@ def _has_structure(problem: FitProblem, optimum: BestFit, slopes: Matrix, among:
     residual = problem.residual(optimum.point)
     left = project(residual)
     square = float(left @ left)
-    for hypothesis in (h for h in among if h.name is not Suspect.FILTERED_FORCE):
+    for hypothesis in (h for h in causes.of(problem) if h.name is not Suspect.FILTERED_FORCE):
         other = _with_hypothesis(problem, hypothesis)
         for point, _ in _starting_points(problem, optimum, other, hypothesis):
-            way = project(other.residual(point) - residual)
-            length = float(way @ way)
-            gain = float(left @ way) ** 2 / max(length, 1e-300)
-            if gain > _SEEN * square and gain * optimum.samples > _SURE * (square - gain):
+            change = other.residual(point) - residual
+            way = project(change)
+            length = max(float(way @ way), 1e-300)
+            gain = float(left @ way) ** 2 / length
+            ratio = gain * optimum.samples / max(square - gain, 1e-300)
+            if causes.hidden is Hidden.LAW:
+                found = gain > _SEEN * square and ratio > _SURE
+            else:
+                by = float(left @ way) / length * np.linalg.lstsq(slopes, change)[0]
+                found = ratio > _CLEAR and bool(np.any(np.abs(by) > optimum.errors))
+            if found:
                 return True
     return False
 
@@ -365,7 +389,7 @@ def _explanation(
     own = {u.name for u in hypothesis.unknowns}
     parts = list(zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True))
     shares = [_explained_share(now, then) for now, then, limit in parts if then > limit]
-    if causes.hidden:
+    if causes.hidden is not Hidden.NONE:
         shares = [1.0 - (now / then) ** 2 for now, then, _ in parts if then > 0.0]
     return Explanation(
         name=hypothesis.name,

@@ -29,6 +29,7 @@ from inerter.records.slower_channels import SlowerChannel, slower_channel
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 _FASTEST_CLOCK = 0.01  # relative difference of two clocks, at most
+_NONLINEAR, _SLIGHT = 0.5, 0.01  # relative change of the gain of a load cell: at most, and starting value
 _RESONANCES = (15.0, 40.0, 100.0)  # [Hz] starting values of a frame resonance
 _CORNERS, _FASTEST_CORNER = (0.3, 3.0), 300.0  # [rad/s] of high-pass filters: starting values, and the largest
 _MARGIN = 10  # samples to either side of repaired ones that are not compared
@@ -43,6 +44,7 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
     peak = max(float(np.abs(e.record.force).max()) for e in problem.experiments)
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
+    yield from nonlinear_load_cells(problem.experiments)
     yield _saturation(problem.experiments)
     yield _clock(any(h.name is Suspect.DELAY for h in problem.assumed), problem.experiments)
     yield _cross_talk("displacement", "N/m", peak / stroke)
@@ -63,6 +65,27 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
         for change in changes[:1]:
             if change - begun < _FITTED * e.record.duration:
                 yield _changed_device(problem, e.record, change)
+
+
+def nonlinear_load_cells(experiments: Sequence[Experiment]) -> list[Hypothesis]:
+    """Load cells that read tension and compression with different gains, or with a gain that changes with the load."""
+    peak = max(0.5 * float(np.ptp(e.record.force)) for e in experiments)  # without the offset
+    kinds: tuple[tuple[Suspect, str, Callable[[Matrix], Matrix]], ...] = (
+        (Suspect.ASYMMETRIC_GAIN, "gain in tension over that in compression", np.sign),
+        (Suspect.NONLINEAR_GAIN, "gain at the largest force over that near zero", lambda load: (load / peak) ** 2),
+    )
+    return [_nonlinear_load_cell(*kind) for kind in kinds]
+
+
+def _nonlinear_load_cell(suspect: Suspect, name: str, change_of_gain: Callable[[Matrix], Matrix]) -> Hypothesis:
+    unknown = Unknown(name, "", -_NONLINEAR, _NONLINEAR, _SLIGHT)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        return np.asarray(force * (1.0 + values[name] * change_of_gain(force)))
+
+    return Hypothesis(
+        suspect, (unknown,), read=read, details=lambda values: {"share": values[name]}, starts=({name: _SLIGHT},)
+    )
 
 
 def _saturation(experiments: Sequence[Experiment]) -> Hypothesis:

@@ -123,6 +123,22 @@ class Suspect(StrEnum):
         return suspect
 
     GAIN = "gain", "the gain of the load cell is not one", ()
+    ASYMMETRIC_GAIN = (
+        "gain by direction",
+        lambda d: (
+            f"the gain of the load cell is {format_share(2.0 * abs(d['share']), 2)} "
+            f"{'larger' if d['share'] > 0.0 else 'smaller'} in tension than in compression"
+        ),
+        "calibrate the load cell in both directions, and correct the force by that calibration",
+    )
+    NONLINEAR_GAIN = (
+        "gain by load",
+        lambda d: (
+            f"the gain of the load cell {'increases' if d['share'] > 0.0 else 'decreases'} with the load, by "
+            f"{format_share(abs(d['share']), 2)} at the largest force"
+        ),
+        "calibrate the load cell up to the largest force, and correct the force by that calibration",
+    )
     DELAY = "delay", _delay_text, ("estimate the delay too, with ", Remedy(Action.FIT_DELAY))
     FILTERED_DISPLACEMENT = (
         "filtered displacement",

@@ -67,6 +67,17 @@ def test_times_in_a_wrong_unit_are_warned_of_before_a_fit(monkeypatch: pytest.Mo
         assert told[0].filename == __file__
 
 
+def test_swapped_columns_are_refused() -> None:
+    """A displacement of metres under a force of millinewtons: no device is that soft."""
+    good = recorded(1)
+    swapped = replace(good, displacement=100.0 * good.force / np.abs(good.force).max(), force=good.displacement)
+    for fit in (lambda: it.identify(swapped, "ideal"), lambda: select_model(swapped, ["ideal"])):
+        with pytest.raises(IdentificationError, match=r"^bench.csv: the displacement has an amplitude of .* swapped"):
+            fit()
+    in_mm = replace(good, displacement=1e3 * good.displacement)
+    assert checked_records(in_mm) == [in_mm]
+
+
 def test_records_of_one_motion_count_each() -> None:
     """The same motion again has other noise; two halves share no time, and a rest before the motion tells nothing."""
     whole, still = recorded(1), np.zeros(TIME.size)

@@ -113,6 +113,7 @@ def test_gain_and_delay_of_the_sensor(kind):
     fit = it.identify([record], model, seed=0, gain=True, delay=True, starts=8)
     assert fit.parameters["sensor gain"].value == pytest.approx(1.05, rel=2e-3)
     assert fit.parameters["sensor delay"].value == pytest.approx(0.004, abs=2e-4)
+    assert any(note.startswith("sensor delay: the force lags the displacement, by ") for note in fit.notes)
     assert fit.parameters["f"].value == pytest.approx(10.0, rel=0.02)
 
 

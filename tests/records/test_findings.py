@@ -10,7 +10,7 @@ from bench import KGF, bench
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from inerter.records.inspection import findings
+from inerter.records.inspection import findings, questionable_units
 from inerter.records.record import Record
 
 GOOD = bench(5000, 1000.0)
@@ -163,3 +163,30 @@ def test_short_and_strange_records_are_judged_without_trouble():
         for values in (np.arange(size), rng.normal(size=size), np.eye(size)[0], np.zeros(size)):
             for time in (np.arange(size) * 1e-3, np.cumsum(rng.random(size) + 0.1)):
                 assert findings(Record(time, values, values[::-1]))
+
+
+@pytest.mark.parametrize(
+    ("role", "factor", "units"),
+    [
+        ("acceleration", 1.0 / 9.80665, "the ratio of g and m/s^2"),
+        ("acceleration", 1e-3, "the ratio of mm and m"),
+        ("velocity", 1e3, "the ratio of mm and m"),
+        ("acceleration", 1.2, ""),
+        ("velocity", -1.0, ""),
+    ],
+)
+def test_a_channel_whose_scale_contradicts_the_displacement_is_found_with_the_factor(role, factor, units):
+    """The derivatives of the motion are known, so that no scale is one of the package."""
+    omega, random = 2 * np.pi * np.array([0.9, 2.3, 4.1]), np.random.default_rng(3)
+    tones = np.exp(1j * np.outer(T, omega)) * np.array([2e-3, 8e-4, 3e-4])
+    moved = [np.real(tones @ (1j * omega) ** order) for order in range(3)]
+    measured = moved[2 if role == "acceleration" else 1]
+    noisy = measured * (1.0 + 0.01 * random.standard_normal(T.size))
+    record = Record(T, moved[0] + 2e-7 * random.standard_normal(T.size), 80.0 * moved[2])
+    assert "inconsistent-scales" not in kinds(replace(record, **{role: 1.02 * noisy}))
+    found = only(replace(record, **{role: factor * noisy}), "inconsistent-scales")
+    assert found.about == role
+    assert found.numbers["factor"] == pytest.approx(factor, rel=0.01)
+    assert units in found.sentence
+    said = [f.kind for f in questionable_units(replace(record, **{role: factor * noisy}))]
+    assert said == ["inconsistent-scales"]

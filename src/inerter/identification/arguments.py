@@ -10,12 +10,14 @@ from itertools import combinations
 import numpy as np
 
 from inerter.errors import IdentificationError
+from inerter.formatting import format_quantity
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Network
-from inerter.records.inspection import questionable_units
+from inerter.records.inspection import PLAUSIBLE, questionable_units
 from inerter.records.record import Record
 
 _FEWEST = 4  # samples of two records at the same times that show that they are the same
+_SOFTEST = 1.0  # [N/m] of the force over the displacement of any device
 _SAME = 1e-9  # of the largest value: differences of one sample by conversion of units and formats
 
 
@@ -23,7 +25,7 @@ def checked_records(records: object) -> list[Record]:
     """The records as a list.
 
     Raises `IdentificationError` unless they are one record or several, of different samples: samples that count twice
-    would make intervals narrower than they are.
+    would make intervals narrower than they are. Nor may displacement and force be in the place of each other.
     """
     given = [records] if isinstance(records, Record) else list(records) if isinstance(records, Sequence) else []
     if not given or not all(isinstance(r, Record) for r in given):
@@ -31,6 +33,8 @@ def checked_records(records: object) -> list[Record]:
             f"identify(...) requires a record or a list of records, such as [read_record('bench.csv')], got "
             f"{records!r}."
         )
+    for record in given:
+        _check_columns(record)
     for (i, one), (j, other) in combinations(enumerate(given, 1), 2):
         if share_samples(one, other):
             raise IdentificationError(
@@ -38,6 +42,17 @@ def checked_records(records: object) -> list[Record]:
                 f"count twice and make the intervals too narrow. Leave one of them out."
             )
     return given
+
+
+def _check_columns(record: Record) -> None:
+    """Raise `IdentificationError` for a displacement of metres under a force of less than 1 N per metre."""
+    travel, load = (0.5 * float(np.ptp(values)) for values in (record.displacement, record.force))
+    if travel > PLAUSIBLE["displacement"] and load < _SOFTEST * travel:
+        raise IdentificationError(
+            f"{record.source}: the displacement has an amplitude of {format_quantity(travel, 'm', 3)} and the force "
+            f"one of {format_quantity(load, 'N', 3)}, so the columns are probably swapped. Exchange displacement and "
+            f"force, or correct their units."
+        )
 
 
 def warn_of_units(records: Sequence[Record]) -> None:

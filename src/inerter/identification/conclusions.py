@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from inerter.errors import OK, Status, StatusKind
 from inerter.identification.diagnosis import explanations
 from inerter.identification.fit import Explanation, Fit, Parameter, RecordFit
+from inerter.identification.hypotheses import DELAY
 from inerter.identification.intervals import BestFit
 from inerter.identification.localising import localisation_of
 from inerter.identification.models import without_mount
@@ -27,6 +28,7 @@ from inerter.networks.elements import Element, Free
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
+from inerter.records.inspection import inconsistent_scales
 from inerter.records.saturation import saturated_samples
 from inerter.statements import Severity
 from inerter.work.progress import report
@@ -85,6 +87,7 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
         draft,
         parameters=parameters,
         identifiable=identifiable,
+        findings=(*findings, *_late_finding(parameters)),
         reliability_warning=doubt,
         status=OK if doubt is None else Status(StatusKind.INACCURATE, doubt.sentence),
         suggestions=tuple(planned),
@@ -94,6 +97,9 @@ def fit_of(solution: SolvedFit, explain: bool = True) -> Fit:
 
 def find_doubt(fit: Fit) -> Finding | None:
     """Reason why the estimates are unreliable, with the most likely cause; None if they are reliable."""
+    for c in fit.comparisons:
+        for wrong in inconsistent_scales(c.record, c.experiment.motion):
+            return Finding(FitFinding.SCALES, Severity.WARNING, wrong.about, wrong.numbers)
     lost = sum(float(saturated_samples(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
     best = _main_cause(fit)
     if fit.predicted < ENOUGH and best is None:
@@ -145,6 +151,13 @@ def _offset_findings(
     for c in comparisons:
         if abs(c.offset) > _NOTICED * friction > 0.0:
             yield Finding(FitFinding.OFFSET, Severity.INFO, c.record.source, {"offset": c.offset})
+
+
+def _late_finding(parameters: Mapping[str, Parameter]) -> Iterator[Finding]:
+    """Finding of the channel that lags the other, where the sign of the delay is known."""
+    late = parameters.get(DELAY)
+    if late is not None and math.isfinite(late.value) and late.interval[0] * late.interval[1] > 0.0:
+        yield Finding(FitFinding.LATE, Severity.INFO, DELAY, {"delay": late.value})
 
 
 def _mass_findings(problem: FitProblem) -> Iterator[Finding]:

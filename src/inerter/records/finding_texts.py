@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from inerter.formatting import (
     format_alike,
     format_number,
@@ -199,6 +201,23 @@ def _drift_text(f: Finding) -> Text:
     )
 
 
+_DERIVATIVES = {"velocity": "first", "acceleration": "second"}
+_UNITS = {9.80665: "g and m/s^2", 1e3: "mm and m", 1e6: "um and m", 25.4: "inch and mm"}  # by their ratio
+_CLOSE = 0.03  # relative difference from such a ratio
+
+
+def _inconsistent_scales_text(f: Finding) -> Text:
+    factor = f.numbers["factor"]
+    near = (u for ratio, u in _UNITS.items() if abs(abs(math.log(abs(factor))) - math.log(ratio)) < _CLOSE)
+    units = next((f", the ratio of {pair}" for pair in near), "")
+    return (
+        f"The {f.about} is {format_number(factor, 4)} times the {_DERIVATIVES[f.about]} derivative of the "
+        f"displacement{units}: the unit, the scale or the sign of one of them is wrong. Models are fitted to the "
+        f"displacement. Correct that channel, such as ",
+        *(Remedy(Action.UNIT, ("displacement", "mm")), "."),
+    )
+
+
 def _swapped_columns_text(f: Finding) -> str:
     ratio = f.numbers["displacement"] / max(f.numbers["force"], 1e-12)
     return (
@@ -309,6 +328,7 @@ class RecordFinding(FindingKind):
     )
     IMPLAUSIBLE = "implausible", _implausible_amplitude_text
     TIME_SCALE = "time-scale", _time_scale_text
+    SCALES = "inconsistent-scales", _inconsistent_scales_text
     SATURATION = "saturation", _saturation_text
     DISPLACEMENT_STEPS = "displacement-steps", _resolution_text
     FORCE_STEPS = "force-steps", _resolution_text
@@ -341,4 +361,9 @@ class RecordFinding(FindingKind):
     UNDERSAMPLED = "undersampled", _undersampling_text
 
 
-QUESTIONABLE = (RecordFinding.IMPLAUSIBLE, RecordFinding.TIME_SCALE)  # units, which a user may correct before a fit
+QUESTIONABLE = (  # units and columns, which a user may correct before a fit
+    RecordFinding.IMPLAUSIBLE,
+    RecordFinding.TIME_SCALE,
+    RecordFinding.SCALES,
+    RecordFinding.SWAPPED,
+)

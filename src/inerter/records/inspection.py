@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.signal import welch
 
 from inerter.records import polarity_delay
+from inerter.records.apparent_mass import ratio_lines
 from inerter.records.clocks import clock_drift, jitter
 from inerter.records.dropouts import find_dropouts
 from inerter.records.finding import Finding
@@ -28,6 +29,7 @@ _FOLDED = 0.8  # of half the sampling rate: motion up to there may go on beyond
 HUM = (50.0, 60.0)  # Hz of the mains
 _FASTEST = 1e4  # m/s^2 r.m.s., above which times are more often in a wrong unit
 _INERTANCE, _LEAST = 1e3, 1e-3  # kg that give less than this share of the force: the same, of too slow a motion
+_CERTAIN, _SAME_SCALE = 0.03, 0.05  # rad, of the phase of a line; relative difference of two scales
 PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more often a wrong unit than a large rig
 
 
@@ -55,15 +57,19 @@ def findings(record: Record) -> list[Finding]:
 
 
 def questionable_units(record: Record) -> list[Finding]:
-    """Findings of sizes, and of accelerations of an even record in motion, that a wrong unit explains better."""
-    moves = record.uniform and not _constant(record)
-    return [*_implausible_sizes(record), *(_time_scale(record, smooth_displacement(record)) if moves else ())]
+    """Findings of sizes, and of an even record in motion of other quantities, that wrong units or columns explain."""
+    found = _implausible_sizes(record)
+    if record.uniform and not _constant(record):
+        motion = smooth_displacement(record)
+        found += [*_time_scale(record, motion), *inconsistent_scales(record, motion), *_swapped_columns(record)]
+    return found
 
 
 def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
     names = ("bandwidth", "highest", "noise", "attenuation", "velocity_noise", "acceleration_noise", "asked")
     return [
         *_time_scale(record, motion),
+        *inconsistent_scales(record, motion),
         *_undersampling(record, motion),
         *_swapped_columns(record),
         *(_hum(record, motion) or _line(record, motion)),
@@ -199,6 +205,28 @@ def _time_scale(record: Record, motion: Motion) -> list[Finding]:
         "inertial": _INERTANCE * acceleration if slow else None,
     }
     return [Finding(RecordFinding.TIME_SCALE, Severity.WARNING, "time", numbers)]
+
+
+def inconsistent_scales(record: Record, motion: Motion) -> list[Finding]:
+    """Measured velocities and accelerations that are not as large as the derivatives of the displacement.
+
+    Lines of the spectrum count whose phase is certain: their coherence is so high that noise changes no ratio by as
+    much as that.
+    """
+    result = []
+    for role in ("velocity", "acceleration"):
+        measured = getattr(record, role)
+        if measured is None:
+            continue
+        within = min(motion.highest, 0.5 * motion.bandwidth)  # where smoothing takes nothing away
+        found = ratio_lines(getattr(motion, role), measured, record.interval, highest=within)
+        ratio = found.ratio[found.phase_error < _CERTAIN]
+        if not ratio.size:
+            continue
+        factor = math.copysign(float(np.median(np.abs(ratio))), float(np.median(ratio.real)))
+        if abs(math.log(abs(factor))) > _SAME_SCALE or factor < 0.0:
+            result.append(Finding(RecordFinding.SCALES, Severity.WARNING, role, {"factor": factor}))
+    return result
 
 
 def _saturation(record: Record) -> list[Finding]:

@@ -40,6 +40,11 @@ def _saturation_text(f: Finding) -> str:
     return f"the load cell was saturated in {share} of the samples; reduce the motion"
 
 
+def _late_text(f: Finding) -> str:
+    late, other = ("force", "displacement") if f.numbers["delay"] > 0.0 else ("displacement", "force")
+    return f"{f.about}: the {late} lags the {other}, by {format_quantity(abs(f.numbers['delay']), 's', 3)}."
+
+
 def _offset_text(f: Finding) -> str:
     size = format_quantity(f.numbers["offset"], "N", 3)
     return (
@@ -178,7 +183,15 @@ class FitFinding(FindingKind):
     SUSPECTED = "suspected", lambda f: f.numbers["likeliest"].sentence
     MISFIT = "misfit", _misfit_text
     SATURATED = "saturated", _saturation_text
+    SCALES = (
+        "inconsistent-scales",
+        lambda f: (
+            f"the {f.about} is {format_number(f.numbers['factor'], 4)} times that of the displacement, so the unit, "
+            f"the scale or the sign of one of them is wrong"
+        ),
+    )
     # notes on the estimates
+    LATE = "late", _late_text
     FORCE_REVERSED = "force-reversed", lambda f: f"{f.about}: force positive in compression; reversed."
     OFFSET = "offset", _offset_text
     MOVING_MASS = (

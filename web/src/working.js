@@ -238,7 +238,7 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }, st
     store.change({ type: "layoutAdded", name: second }, gesture);
     const inSeries = before.replace(new RegExp(`\\b${damper}\\b`), `${damper} - (${network.text})`);
     store.change({ type: "drawn", text: inSeries, added: {} }, gesture);
-    store.change({ type: "selected", layout: name }, gesture);
+    store.change({ type: "selected", layout: name, strut: store.get().history.present.strut }, gesture);
     also = `, and in ${second}, in series with ${damper}`;
   }
   return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut || "strut"])} of ${

@@ -42,6 +42,7 @@ from inerter import (
     plot_bode,
     run_study,
     state_space,
+    tied,
 )
 
 k, c, b = Spring(60e3), Damper(3e3), Inerter(50.0)
@@ -270,6 +271,7 @@ OTHER_EXCEPTIONS = {
     "a number as measures of comfort": lambda: mechanism(measures=PerformanceOutputs(comfort=5)),
     "endless delay": lambda: system().with_delays("road", [math.inf]),
     "frequencies as text": lambda: frequency_response(system(), ["a"]),
+    "a tie by an array": lambda: tied("c", factor=np.array([1.0, 2.0])),
     "a frequency as text": lambda: frequency_response(system(), "1.0"),
     "a frequency that is true": lambda: frequency_response(system(), True),
     "the path of a study for the study": lambda: run_study("my-car.toml", "out"),

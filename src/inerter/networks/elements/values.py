@@ -171,9 +171,9 @@ def tied(name: str, factor: float = 1.0, plus: float = 0.0) -> Tied:
         raise NetworkError("A tied value depends on a free one. Give its name.")
     check_name(name)
     found = Tied((name,))
-    if factor != 1.0:
+    if _number(factor) != 1.0:
         found = factor * found
-    return found + plus if plus != 0.0 else found
+    return found + plus if _number(plus) != 0.0 else found
 
 
 def _combine(one: Tied | float, other: Tied | float, operation: str) -> Tied:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from same_motions import assert_same_motion
 from wang_su import paper_quarter_car
 
 import inerter as it
+from inerter.kernels import integrate
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import InputTable, tabulate
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
@@ -61,6 +64,29 @@ def test_two_steps_from_one_state_are_two_steps(name):
         found = np.concatenate([state, first, second, [1.0]]) @ twice
         size = np.abs(np.concatenate([middle[:n], second, [1.0]])) @ np.abs(once)
         assert np.all(np.abs(found - expected) <= 1e-12 * size)
+
+
+@pytest.mark.parametrize("name", MEMBERS)
+def test_sizes_that_are_compiled_change_no_bit(name, monkeypatch):
+    runs = []
+    for worth in (math.inf, 0):
+        monkeypatch.setattr(integrate, "WORTH_COMPILING", worth)
+        run = started(name)
+        run.advance(run.table.time.size - 1)
+        runs.append(run)
+    read, compiled = runs
+    assert read.march.address == 0
+    assert compiled.march.address != 0
+    assert read.events > 20
+    for found, expected in zip(compiled.record, read.record, strict=True):
+        np.testing.assert_array_equal(found, expected)
+
+
+def test_sizes_are_compiled_once_the_steps_of_all_runs_repay_it(monkeypatch):
+    steps = member("friction")[1].time.size
+    monkeypatch.setattr(integrate, "WORTH_COMPILING", 2 * steps + 1)
+    monkeypatch.setattr(integrate, "_STEPS", type(integrate._STEPS)())
+    assert [started("friction").march.address != 0 for _ in range(4)] == [False, False, True, True]
 
 
 def test_a_device_without_states_is_marched():

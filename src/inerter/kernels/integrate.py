@@ -6,6 +6,7 @@ and rows of a step are computed in groups that one instruction takes.
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -18,6 +19,8 @@ from inerter.kernels.lanes import GROUP, as_numbers, constant_at, in_groups, lan
 BLOCK = 16  # steps that are judged together
 _FIRST = 4  # the same in the first block: where one alarm follows another, all steps made beyond it are in vain
 _REGISTERS = 28  # of the processor, without those for sums
+WORTH_COMPILING = 10_000_000  # steps of one shape: compiled they take 0.1 s less, and compiling takes some 0.3 s
+_STEPS: Counter[tuple[MarchShape, tuple[int, ...]]] = Counter()  # of each shape, in this process
 _EXTREMES = 7  # rows of `Path.extremes`, see there
 _STATES, _INPUTS, _BENDS, _LEAST, _MOST, _OF_BLOCK, _OF_STEP = range(_EXTREMES)
 
@@ -348,7 +351,7 @@ def march_type(lines: MarchLines, knots: Knots, record: History, span: Span) -> 
 march_at = function_at(march_type)
 
 
-@part(borrowing=True)
+@part(borrowing=True, apart=True)
 def march_with_sizes(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
     """Whole steps by `march_steps` with sizes read at run time: the same numbers, but slower."""
     return march_steps(lines, knots, record, span, march.shape, march.numbers)
@@ -356,24 +359,37 @@ def march_with_sizes(march: March, lines: MarchLines, knots: Knots, record: Hist
 
 @part(borrowing=True, plain=march_with_sizes)
 def whole_steps(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
-    """Whole steps by the `march_steps` compiled for this shape.
+    """Whole steps by the `march_steps` compiled for this shape, if it is compiled.
 
     Its address is handed over, not the function: that would run Python code within the call, which Ctrl-C can break.
     """
+    if march.address == 0:
+        return march_with_sizes(march, lines, knots, record, span)
     return int(march_at(march.address)(lines, knots, record, span))
 
 
-@cache
 def march_of(n: int, used: tuple[int, ...], elements: int, outputs: int, jumps: int, sharp: bool) -> March:
     """The march for systems of n states, these of `flow.knot_numbers`, so many nonlinear elements and squared outputs.
 
     It steps while no guard can be crossed within the step, and returns the first segment that needs event detection.
     Where signals are held, the first `jumps` inputs may jump at every knot: positions follow at once. `sharp`: the
-    first terms of the guards' sway are values, not sums of sizes, so that large motions cancel in them.
+    first terms of the guards' sway are values, not sums of sizes, so that large motions cancel in them. Sizes are read
+    at run time, unless `march_for` compiles it.
     """
     _, rows, _ = lines_of(n, len(used), elements, outputs, jumps, sharp)
-    shape = MarchShape(n, len(used), elements, outputs, jumps, rows, sharp)
-    numbers = np.array(used or (0,), np.int64)
+    return March(0, MarchShape(n, len(used), elements, outputs, jumps, rows, sharp), np.array(used or (0,), np.int64))
+
+
+def march_for(steps: int, march: March) -> March:
+    """The march of a run of so many steps, compiled for its shape once all runs of it in this process repay that."""
+    form = march.shape, tuple(march.numbers.tolist())
+    _STEPS[form] += steps
+    return march if _STEPS[form] < WORTH_COMPILING else _compiled_march(*form)
+
+
+@cache
+def _compiled_march(shape: MarchShape, used: tuple[int, ...]) -> March:
+    numbers = np.array(used, np.int64)
 
     @kernel("march", typed=True, fused=True, borrowing=True, by_address=True)
     def march(lines: MarchLines, knots: Knots, record: History, span: Span) -> int:

@@ -38,7 +38,7 @@ from inerter.kernels.arrays import (
 from inerter.kernels.crossing import ORDERS
 from inerter.kernels.discretise import discretise
 from inerter.kernels.events import evaluate, integrate
-from inerter.kernels.integrate import lines_of, march_of, room_of
+from inerter.kernels.integrate import lines_of, march_for, march_of, room_of
 from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
 from inerter.networks.elements.roles import GuardRole, LinearRole
@@ -265,7 +265,7 @@ def start(
     integration = Integration(
         system=system,
         table=table,
-        march=machine.march,
+        march=march_for(table.time.size, machine.march),
         mechanics=machine.mechanics,
         modes=own_modes(machine.modes),
         begun=state,

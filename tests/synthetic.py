@@ -89,6 +89,10 @@ def limited(data: xr.Dataset, active: np.ndarray, missed: np.ndarray) -> xr.Data
     data = data.assign_coords(limit=limits, limit_unit=("limit", ["m", "N"]), **each)
     data = data.assign(
         **{"limit.part": ((*dims, "limit"), np.full(size.shape, "", dtype=object))},
+        **{
+            f"limit.{error}": ((*dims, "limit"), np.full(size.shape, np.nan))
+            for error in ("standard_error", "error_bound")
+        },
         limit_value=((*dims, "limit"), size * [9e-3, 1300.0], {"basis": ""}),
         limit_active=((*dims, "limit"), active | missed[..., None]),
         limit_cost=((*dims, "limit"), np.where(active, -0.4, 0.0)),

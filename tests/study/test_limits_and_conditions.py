@@ -346,6 +346,20 @@ def test_conditions_are_told_and_written_as_they_were(load: Callable[..., Study]
     assert all(f'"{text}"' in write_resolved(study) for text in ("50 km/h", "0.32 t"))
 
 
+@pytest.mark.parametrize(
+    ("error", "bound", "text"), [(2.0, 0.01, "900 N"), (np.nan, 1e-3, "902 N"), (2.0, 0.0, "902.3 +- 2.0 N")]
+)
+def test_the_value_of_a_limit_has_the_digits_that_its_errors_allow(
+    load: Callable[..., Study], error: float, bound: float, text: str
+) -> None:
+    study = load('indices = ["J1"]\noptimise = "norm"\nsubject_to = { J3 = { at_most = "1 kN" } }', elements=FREE)
+    results = dataset(study, {})
+    results["limit_value"][:], results["limit.standard_error"][:], results["limit.error_bound"][:] = 902.3, error, bound
+    results["limit_unit"][:], results["limit.part"][:] = "N", "condition loaded"
+    (table,) = limit_tables(results)
+    assert {row.cells[2].text for row in table.rows} == {f"{text} (condition loaded)"}
+
+
 def test_a_limit_holds_in_each_condition(load: Callable[..., Study]) -> None:
     limits = 'subject_to = { J3 = { at_most = "900 N", at_least = "400 N" } }'
     study = load(f'indices = ["J1"]\noptimise = "norm"\n{limits}', TWO)
@@ -359,7 +373,9 @@ def test_a_limit_holds_in_each_condition(load: Callable[..., Study]) -> None:
             (type(car)(320.0, 35.0, 150e3, car.strut), it.Road(5e-7, 30.0)),
         )
     ]
-    (most, *_), (least, *_) = outcome.limits
+    (most, *_, upper, _, rounding), (least, *_, lower, _, _) = outcome.limits
+    assert {upper, lower} == {"condition empty", "condition 2"}
+    assert 0.0 < rounding < 1e-9
     assert (most, least) == pytest.approx((max(loads), min(loads)), rel=1e-9)
     again = Outcome(**json.loads(json.dumps(outcome.to_json())))
     assert json.dumps(again.to_json()) == json.dumps(outcome.to_json())

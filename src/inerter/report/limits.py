@@ -62,7 +62,8 @@ def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
     value, cost, part = float(entry["limit_value"]), float(entry["limit_cost"]), str(entry["limit.part"].item())
     unit, active = str(entry["limit_unit"].item()), bool(entry["limit_active"])
     # a search ends so near an active limit that only zeros would tell the value from it
-    quantity = Shown(value, format_quantity(value, unit)) if active else Quantity(value, unit)
+    errors = float(entry["limit.standard_error"]), float(entry["limit.error_bound"])
+    quantity = Shown(value, format_quantity(value, unit)) if active else Quantity(value, unit, *errors)
     content = f"{quantity} ({part})" if part else quantity
     if bool(infeasible(entry)):
         return content, "value of the closest design"

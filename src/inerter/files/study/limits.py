@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -303,20 +304,24 @@ def part_words(vehicle: Vehicle, output: str) -> str:
 
 def limit_results(
     study: Study, layout: str, vehicle: Vehicle, held: tuple[ConstraintResult, ...]
-) -> list[tuple[float, bool, float, str]]:
-    """Value closest to each limit, whether the limit is active, sensitivity to 1 % of the limit [%], and its part.
+) -> list[tuple[float, bool, float, str, float, float]]:
+    """Value closest to each limit, whether the limit is active, sensitivity to 1 % of the limit [%], part, and errors.
 
-    The part is the tyre or strut of that value where the limit applies to each of several; else empty.
+    The part is the tyre or strut of that value where the limit applies to each of several, and the condition where the
+    study has some; else empty. The errors are the standard error, and the largest relative one apart from sampling.
     `held` are all limited quantities of an optimum of `vehicle`, one of a layout, in the order of `limits_in`.
     """
     found, rest = [], list(held)
+    labels = [f"condition {label}" for label in study.condition_labels] or [""]
     for several in limits_in(study, layout):
-        count = sum(len(for_each(one.of, vehicle)) for one in several)
-        own, rest = rest[:count], rest[count:]
-        worst = max(own, key=lambda one: one.excess)
+        where = [label for one, label in zip(several, labels, strict=True) for _ in for_each(one.of, vehicle)]
+        own, rest = rest[: len(where)], rest[len(where) :]
+        worst, there = max(zip(own, where, strict=True), key=lambda one: one[0].excess)
         active = [one for one in own if one.active]
         cost = float(sum(one.sensitivity for one in active))
-        found.append((worst.value, bool(active), cost, part_words(vehicle, output_of(worst.limit.of))))
+        part = ", ".join(filter(None, (part_words(vehicle, output_of(worst.limit.of)), there)))
+        error = math.nan if worst.estimate.standard_error is None else worst.estimate.standard_error
+        found.append((worst.value, bool(active), cost, part, error, worst.estimate.error_bound))
     return found
 
 

@@ -377,7 +377,9 @@ LIMITED: dict[str, _Variable] = {
     "limit_value": (("limit",), np.nan, "what is limited, where it comes closest to its limit"),
     "limit_active": (("limit",), False, "whether the limit holds the optimum back"),
     "limit_cost": (("limit",), np.nan, "change of the index for one per cent more of the limit"),
-    "limit.part": (("limit",), "", "tyre or strut that comes closest, of a limit on each"),
+    "limit.part": (("limit",), "", "tyre or strut, and condition, that come closest"),
+    "limit.standard_error": (("limit",), np.nan, "standard error of what is limited"),
+    "limit.error_bound": (("limit",), np.nan, "its largest relative error, sampling apart"),
 }
 UNCERTAIN: dict[str, _Variable] = {
     "improvement_error": (("method",), np.nan, "standard error of the improvement"),

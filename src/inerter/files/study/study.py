@@ -17,7 +17,7 @@ from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError
 from inerter.files.common.roads import MeasuredLine
 from inerter.files.common.suggest import nearest
-from inerter.files.study.conditions import StudyCondition, condition_of, what_of
+from inerter.files.study.conditions import StudyCondition, condition_labels, condition_of, what_of
 from inerter.files.study.own_indices import OwnIndex
 from inerter.files.study.place import ELEMENTS, Place, element_at, place_of
 from inerter.files.study.places import free_in_vehicle, places, sections_of, with_numbers
@@ -157,6 +157,11 @@ class Study(Settings):
         """Study with the numbers of one of its conditions in place of its own, and without conditions."""
         changed = [(place_of(label), value) for label, value in self.conditions[number].numbers.items()]
         return replace(with_numbers(self, changed), conditions=())
+
+    @property
+    def condition_labels(self) -> list[str]:
+        """Label of each condition: its name, else its number from 1."""
+        return condition_labels(self.conditions)
 
     def in_each(self, index: IndexLike) -> list[IndexLike]:
         """List of an index in each condition separately; of the index alone without conditions."""

@@ -16,6 +16,8 @@ STRUTS = {
     "parallel": it.Spring(120e3) | it.Damper(3705.4) | it.Inerter(128.57) | FRICTION,
     "series": it.Spring(120e3) | it.Damper(7544.2) - (it.Inerter(366.52) | FRICTION),
     "two": (it.Spring(120e3) | it.Damper(3705.4) | FRICTION) - (it.Spring(1e6) | it.Damper(3200.0) | it.Friction(5.0)),
+    "gap": it.Spring(120e3)
+    | it.Damper(7353.0) - ((it.Spring(1e6) | it.Damper(3200.0)) - it.Gap(2e-4) - it.Inerter(300.0)),
 }
 
 
@@ -40,6 +42,8 @@ def test_a_guard_stays_within_its_ends_and_the_closest_bound_of_its_sway(strut):
             state, numbers = rng.normal(size=n), rng.normal(size=4 * (nr + len(run.system.mechanism.forces)))
             numbers[np.setdiff1d(np.arange(numbers.size), run.used)] = 0.0
             path.rows[0, :n], path.inputs[0, : run.used.size] = state, numbers[run.used]
+            known = np.concatenate([state, numbers[run.used], [1.0]])
+            path.rows[1] = known @ run.modes.steps[m][: known.size, : shape.rows]
             close, wide = np.zeros((2, sizes.elements))
             fill_sharp_sways(run.modes.steps[m], path, 0, shape, close)
             fill_sways(run.modes.steps[m], path, 0, 1, shape, wide)

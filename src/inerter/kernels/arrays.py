@@ -21,7 +21,8 @@ ConstantInts = Annotated[Any, "Array(int64, 1, 'C', readonly=True)"]
 FRICTION, GAP = 0, 1
 KIND, OWN_POSITION = 0, 1  # columns of the table of elements of a piecewise system
 NONE: Any = np.int64(-1)  # no mode, or nobody: a plain -1 is a type of its own to the compiler, and compiles twice
-SHARP = 4  # terms of a guard's sway over a step that are values, where that is worth it
+SHARP = 4  # terms of a guard's sway over a step that are values, where that is worth it ...
+AT_ONCE = 1  # ... and of those the ones that are computed with every step, in a march that is sharp
 
 
 def record(fields: list[tuple[str, type]]) -> np.dtype[Any]:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import SHARP, Floats, Ints, MapRows, MarchShape, Matrix, Sizes
+from inerter.kernels.arrays import AT_ONCE, SHARP, Floats, Ints, MapRows, MarchShape, Matrix, Sizes
 from inerter.kernels.decorators import kernel, part
 from inerter.kernels.dense import add_block, balance, block, count_squarings, exponential, product
 
@@ -81,12 +81,13 @@ def set_binary_units(A: Matrix, units: Floats) -> None:
 
 @part(typed=True, apart=True)
 def _bound_sway(
-    guards: Matrix, chain: Matrix, units: Floats, n: int, used: Ints, steps: Matrix, bends: int, last: int, top: int
+    guards: Matrix, chain: Matrix, units: Floats, n: int, used: Ints, steps: Matrix, bends: int, at_once: int, top: int
 ) -> None:
     """One eighth of the largest second derivative of each guard over a step, as weights on absolute values.
 
-    The chain is over states in these units. Its first terms go to the columns from `bends` on as they are, the others
-    to those from `last` on, and all to those from `top` on, if that is another place.
+    The chain is over states in these units. So many first terms as are computed `at_once` with a step go to the columns
+    from `bends` on as they are, all others to those from `top` on. For the closest bound, the last terms go to the
+    columns after these, and the first ones to those after that as they are.
     """
     k, columns, size = guards.shape[0], n + used.shape[0] + 1, chain.shape[0]
     term, power, plain, norm = np.zeros((columns, k)), np.empty((k, size)), np.empty((k, size)), 0.0
@@ -108,15 +109,18 @@ def _bound_sway(
                 largest, guard = max(largest, abs(power[i, j])), max(guard, abs(guards[i, j] * units[j]))
             more = more or largest > _NEGLIGIBLE * guard
         into_knots(plain, n, used, term, 0)
-        weight, first = order * (order - 1) / 8.0, bends + (order - 2) * k
+        weight = order * (order - 1) / 8.0
         for j in range(columns):
             for i in range(k):
-                if 2 <= order < 2 + SHARP:
-                    steps[j, first + i] = weight * term[j, i]
+                bend = weight * term[j, i]
+                if 2 <= order < 2 + at_once:
+                    steps[j, bends + (order - 2) * k + i] = bend
                 else:
-                    steps[j, last + i] += weight * abs(term[j, i])
-                if top != last:
-                    steps[j, top + i] += weight * abs(term[j, i])
+                    steps[j, top + i] += abs(bend)
+                if 2 <= order < 2 + SHARP:
+                    steps[j, top + order * k + i] = bend
+                else:
+                    steps[j, top + k + i] += abs(bend)
         if not more and order > 2.0 * norm:  # each further term is less than half of the one before
             break
 
@@ -196,7 +200,7 @@ def discretise(
     if shape.jumps > 0:
         into_knots(outputs, n, moving.used, steps, rows)
         rows += sizes.squares
-    top, last = shape.rows, shape.rows if shape.sharp else shape.rows + k
-    _bound_sway(guards, balanced, units, n, moving.used, steps, rows if shape.sharp else last + k, last, top)
+    at_once = AT_ONCE if shape.sharp else 0
+    _bound_sway(guards, balanced, units, n, moving.used, steps, rows, at_once, shape.rows)
     fill_second_step(steps, shape)
     return 1.0 / max(spectral_radius_bound(maps, n), 1e-9)

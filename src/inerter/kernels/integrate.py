@@ -12,7 +12,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from inerter.kernels.arrays import SHARP, Array, ConstantInts, History, Knots, March, MarchLines, MarchShape, Span
+from inerter.kernels.arrays import (
+    AT_ONCE,
+    SHARP,
+    Array,
+    ConstantInts,
+    History,
+    Knots,
+    March,
+    MarchLines,
+    MarchShape,
+    Span,
+)
 from inerter.kernels.decorators import function_at, kernel, part
 from inerter.kernels.lanes import GROUP, as_numbers, constant_at, in_groups, lane, larger, multiply_add, smaller
 
@@ -48,14 +59,14 @@ def lines_of(n: int, inputs: int, elements: int, outputs: int, jumps: int, sharp
 
     Lines are those of a step, the jumps of the state with each input, and those of two steps.
     """
-    rows = n + 2 * elements + outputs * (2 if jumps else 1) + (SHARP * elements if sharp else 0)
-    return 2 * n + 3 * inputs + 2 + jumps, round_up(rows), sway_columns(elements, sharp)
+    rows = n + 2 * elements + outputs * (2 if jumps else 1) + (AT_ONCE * elements if sharp else 0)
+    return 2 * n + 3 * inputs + 2 + jumps, round_up(rows), sway_columns(elements)
 
 
 @part(borrowing=True, inside=True)
-def sway_columns(elements: int, sharp: bool) -> int:
-    """Columns of the sway of guards: all terms as sizes; unless `sharp`, the last ones too, and the first as values."""
-    return round_up(elements if sharp else (2 + SHARP) * elements)
+def sway_columns(elements: int) -> int:
+    """Columns of the sway of guards: sizes of what is no value at once; for the closest bound sizes, and values."""
+    return round_up((2 + SHARP) * elements)
 
 
 def room_of(shape: MarchShape) -> int:
@@ -189,7 +200,7 @@ def fill_sways(steps: Array, path: Path, first: int, stop: int, shape: MarchShap
     find_largest(path.row_groups, first, stop, groups_of(path, shape, 0, n), groups[_STATES])
     find_largest(path.input_groups, first, stop, (0, path.input_groups.shape[1]), groups[_INPUTS])
     if shape.sharp:
-        columns = groups_of(path, shape, bends, bends + SHARP * k)
+        columns = groups_of(path, shape, bends, bends + AT_ONCE * k)
         find_largest(path.row_groups, first + 1, stop + 1, columns, groups[_BENDS])
     for e in range(k):
         sway = steps[n + m, shape.rows + e]
@@ -197,7 +208,7 @@ def fill_sways(steps: Array, path: Path, first: int, stop: int, shape: MarchShap
             sway += steps[j, shape.rows + e] * largest[_STATES, j]
         for j in range(m):
             sway += steps[n + j, shape.rows + e] * largest[_INPUTS, j]
-        for term in range(SHARP if shape.sharp else 0):
+        for term in range(AT_ONCE if shape.sharp else 0):
             sway += largest[_BENDS, bends + term * k + e]
         out[e] = sway
 
@@ -247,8 +258,6 @@ def count_safe(limits: Array, steps: Array, path: Path, count: int, shape: March
             if not is_safe(limits, row, row, of_block, shape):
                 fill_sways(steps, path, b, b + 1, shape, of_step)
                 if not is_safe(limits, row, row, of_step, shape):
-                    if shape.sharp:
-                        return b
                     fill_sharp_sways(steps, path, b, shape, of_step)
                     if not is_safe(limits, row, row, of_step, shape):
                         return b
@@ -290,7 +299,7 @@ def march_steps(
 ) -> int:
     """Step while no guard can be crossed within the step; returns the first segment that needs event detection."""
     n, one = shape.states, shape.states + shape.inputs + 1
-    path, columns = path_in(lines.work, shape), shape.rows + sway_columns(shape.elements, shape.sharp)
+    path, columns = path_in(lines.work, shape), shape.rows + sway_columns(shape.elements)
     steps, jumps = (
         as_numbers(lines.steps, 0, (one, columns)),
         as_numbers(lines.steps, one * columns, (shape.jumps, columns)),

@@ -9,6 +9,7 @@ from wang_su import ROAD, paper_half_car, paper_quarter_car
 import inerter as it
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import tabulate
+from inerter.simulation.periodic_steady_state import settle
 from inerter.systems.piecewise import piecewise
 
 STRUT = it.Spring(1.2e5) | it.Damper(3000.0) | it.Friction(40.0)
@@ -39,3 +40,12 @@ def test_runs_with_all_modes_share_them_and_equal_those_that_build_their_own(car
         np.testing.assert_allclose(run.record.states, shared.record.states, rtol=0.0, atol=1e-12)
         assert run.record.squares == pytest.approx(shared.record.squares, rel=1e-12)
         assert run.events == shared.events
+
+
+def test_the_period_that_is_recorded_is_the_one_that_repeats_so_well():
+    system, road = piecewise(paper_quarter_car(STRUT)), it.sine(0.02, 2.0)
+    table = tabulate([road, None], [0.0, 0.0], 1.0, 5e-4)
+    run, steady = settle(system, table, np.zeros(system.order), energy=False)
+    assert run.segment == table.time.size - 1
+    assert run.events > 0
+    assert run.mismatch(run.record.states[0]) == steady.mismatch < 1e-9

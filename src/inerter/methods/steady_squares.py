@@ -65,7 +65,6 @@ def steady_squares(
         jumps = missed_by_samples(integration, outputs, np.sqrt(found))
         return Squares(found, integration.warning, steady, jumps, np.full(len(outputs), np.nan))
     integration, steady = settle(system, table, state, energy=False, most=most)
-    integration.advance(integration.table.time.size - 1)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
         return _nan_squares(len(outputs), integration.status, steady)
@@ -149,8 +148,8 @@ def jump_scatter(integration: Integration, outputs: Sequence[str]) -> Array:
     steps = max(integration.table.samples - 1, 1)
     squares = ends @ integration.known[met] ** 2
     if integration.record.states.shape[0] > 1:
-        wanted = (integration.system.outputs[name] for name in outputs)
-        squares = squares + np.array([np.sum(contact_jumps(integration, output) ** 2) for output in wanted])
+        wanted = [integration.system.outputs[name] for name in outputs]
+        squares = squares + np.sum(contact_jumps(integration, wanted) ** 2, axis=1)
     return np.asarray(np.sqrt(squares / 12.0) / steps)
 
 

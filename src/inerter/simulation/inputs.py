@@ -60,6 +60,11 @@ class InputTable:
         """The inputs as kernels take them."""
         return Knots(*(getattr(self, name) for name in Knots._fields))
 
+    @cached_property
+    def sample_knots(self) -> NDArray[np.intp]:
+        """Numbers of the knots at the samples."""
+        return np.flatnonzero(self.slot >= 0)
+
     def knot_of(self, sample: int) -> int:
         """Number of the knot at a sample."""
         return 0 if self.slot[0] == sample else int(np.flatnonzero(self.slot == sample)[0])

@@ -97,31 +97,34 @@ def _event_list(system: PiecewiseSystem, events: NDArray[Any]) -> tuple[Event, .
 
 def _evaluate(integration: Integration, reached: int, wanted: Output) -> Matrix:
     """An output at the samples that were reached."""
-    over, inputs = _rows_of(integration, wanted)
     at = slice(reached)
-    return _at_samples(integration, over, inputs[at], integration.record.visited[at], at)
+    over, inputs = _rows_of(integration, wanted, at)
+    return _at_samples(integration, over, inputs, integration.record.visited[at], at)
 
 
-def contact_jumps(integration: Integration, wanted: Output) -> Matrix:
-    """Jumps of an output between samples at which different gaps are in contact.
+def contact_jumps(integration: Integration, wanted: Sequence[Output]) -> Matrix:
+    """Jumps (outputs, jumps) between samples at which different gaps are in contact.
 
     Both contact states are applied to the second of the two samples, which must have been kept.
     """
     system, record = integration.system, integration.record
+    after = 1 + np.flatnonzero(record.visited[1:] != record.visited[:-1])
     loose = [e for e, element in enumerate(system.nonlinear_elements) if not element.is_damped]
-    contacts = integration.modes.state[record.visited[: record.states.shape[0]]][:, loose]
-    after = 1 + np.flatnonzero(np.any(contacts[1:] != contacts[:-1], axis=1))
-    if not after.size:
-        return np.zeros(0)
-    over, inputs = _rows_of(integration, wanted)
-    there, here = (
-        _at_samples(integration, over, inputs[after], record.visited[at], after) for at in (after, after - 1)
-    )
-    return there - here
+    there, here = (integration.modes.state[record.visited[at]][:, loose] for at in (after, after - 1))
+    after = after[np.any(there != here, axis=1)]
+    found = np.zeros((len(wanted), after.size))
+    for jumps, output in zip(found, wanted, strict=True):
+        if after.size:
+            over, inputs = _rows_of(integration, output, after)
+            there, here = (
+                _at_samples(integration, over, inputs, record.visited[at], after) for at in (after, after - 1)
+            )
+            jumps[:] = there - here
+    return found
 
 
 def _at_samples(
-    integration: Integration, over: Matrix, inputs: Matrix, modes: NDArray[np.int64], at: slice | NDArray[np.int64]
+    integration: Integration, over: Matrix, inputs: Matrix, modes: NDArray[np.int64], at: slice | NDArray[np.intp]
 ) -> Matrix:
     """Rows `over` of these modes applied to the states kept `at` some samples, and to the inputs there."""
     out = np.empty(inputs.shape[0])
@@ -129,8 +132,8 @@ def _at_samples(
     return out
 
 
-def _rows_of(integration: Integration, wanted: Output) -> tuple[Matrix, Matrix]:
-    """Rows of an output in each mode, on the state, on inputs that move and on one; and these inputs at all samples."""
+def _rows_of(integration: Integration, wanted: Output, at: slice | NDArray[np.intp]) -> tuple[Matrix, Matrix]:
+    """Rows of an output in each mode, on the state, on inputs that move and on one; and these inputs at samples."""
     system, table = integration.system, integration.table
     on_x, on_u, on_eta = output_rows(system, wanted)
     n, nu, roads = on_x.size, on_u.size, len(system.mechanism.roads)
@@ -144,15 +147,17 @@ def _rows_of(integration: Integration, wanted: Output) -> tuple[Matrix, Matrix]:
     channel = [*range(roads)] * 3 + [*range(roads, nu - 2 * roads)]
     used = [i for i in range(nu) if np.any(over[:, n + i]) and table.moving[channel[i]]]
     over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, [n + i for i in used]], over[:, -1:]], axis=1))
-    inputs = np.empty((table.samples, len(used)))
+    inputs = np.empty((table.sampled[at].size, len(used)))
     for column, i in enumerate(used):
-        inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i])
+        inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i], at)
     return over, inputs
 
 
-def sampled_input(table: InputTable, derivative: int, channel: int) -> Matrix:
-    """An input, or its first or second derivative, at the samples, from the right (at the last one from the left)."""
-    at = np.flatnonzero(table.slot >= 0)
+def sampled_input(
+    table: InputTable, derivative: int, channel: int, samples: slice | NDArray[np.intp] = slice(None)
+) -> Matrix:
+    """An input, or its first or second derivative, at samples, from the right (at the last knot from the left)."""
+    at = table.sample_knots[samples]
     if derivative < 2:
         right, left = ((table.value, table.value_before), (table.slope, table.slope_before))[derivative]
         found = right[at, channel]

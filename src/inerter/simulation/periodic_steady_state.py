@@ -76,15 +76,21 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
 def settle(
     system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool, most: int = _PERIODS
 ) -> tuple[Integration, PeriodicState]:
-    """Repeat one period until the state repeats, at most `most` times; an integration at the start of the next one."""
-    begun = event_driven.start_finely(system, table, state, keep=False)
-    again = begun.table.repeating
-    quick, settled = _repeat_period(begun, again, _REPEATS, most)
-    recorded = event_driven.start(system, again, quick.state, account=energy, after=quick.ending)
-    recorded.status = quick.status
-    if quick.status.ok and settled.mismatch > _ENOUGH:
-        recorded.warning = _steady_state_warning(settled)
-    return recorded, settled
+    """Repeat one period until the state repeats, at most `most` times; an integration at the end of the last one.
+
+    With the `energy` it is at the start of the next one: the account takes ten times as long, and is of that alone.
+    """
+    found = event_driven.start_finely(system, table, state, keep=not energy)
+    again = found.table.repeating
+    found, settled = _repeat_period(found, again, _REPEATS, most)
+    found.table = again
+    if energy:
+        status = found.status
+        found = event_driven.start(system, again, found.state, account=True, after=found.ending)
+        found.status = status
+    if found.status.ok and settled.mismatch > _ENOUGH:
+        found.warning = _steady_state_warning(settled)
+    return found, settled
 
 
 def mean_squares(
@@ -120,6 +126,7 @@ def _repeat_period(
         begun = integration.state
         place["segment"] = place["special"] = place["events"] = 0
         integration.record.squares[:] = 0.0
+        integration.record.states[:1], integration.record.visited[:1] = begun, place["mode"]
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)

@@ -1,5 +1,7 @@
 """The piecewise-linear system of a layout: what is found once for all its values."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -69,3 +71,10 @@ def test_other_values_give_the_system_of_the_other_design():
 def test_values_that_change_the_layout_are_refused(vehicle, values, said):
     with pytest.raises(DesignError, match=said):
         with_element_values(piecewise(vehicle), values)
+
+
+def test_an_output_of_a_point_is_there_whatever_was_simulated_before():
+    mechanism = car().mechanism()
+    piecewise(mechanism)
+    seat = it.TrackedPoint("seat", {"sprung": 1.0})
+    assert "seat_acceleration" in piecewise(replace(mechanism, points=(seat,))).outputs

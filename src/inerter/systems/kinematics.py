@@ -94,6 +94,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
         tuple(mounts),
         tuple(road.name for road in mechanism.roads),
         tuple((force.name, tuple(force.port.items())) for force in mechanism.forces),
+        tuple((point.name, tuple(point.port.items()), point.angle) for point in mechanism.points),
         mechanism.ground_moves,
     )
 

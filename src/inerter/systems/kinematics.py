@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,7 @@ from inerter.systems.outputs import Output, outputs
 from inerter.vehicle.mechanism import Mechanism, Strut
 
 Matrix = NDArray[np.float64]
+Rows = tuple[Matrix, Matrix]  # of dampers and of springs
 _UNCERTAIN = 1e-12  # of a travel that rounding takes, from which on other positions are chosen
 _NUMBER = {GuardRole.FORCE: FRICTION, GuardRole.ELONGATION: GAP}  # that the kernels have for it
 
@@ -50,6 +52,10 @@ class Kinematics:
     lengths: Matrix
     elements: NDArray[np.int64]
     ports: Matrix  # of the external forces, over nodes
+    kinetic: Matrix  # (coordinates and inerters, na): velocities that carry kinetic energy, and ...
+    kinetic_road: Matrix  # ... their part from z'
+    acting: tuple[int, ...]  # branches of inerters, dampers and springs
+    balance: tuple[Matrix, Matrix]  # see `_balance_terms`
     nonlinear: tuple[dict[int, int], ...]  # branches that act as one, and their direction in it
     needs_acceleration: tuple[bool, ...]
     moves_elements: tuple[bool, ...]
@@ -122,6 +128,12 @@ def _analyse_layout(layout: _Layout) -> Kinematics:
     laws = (LinearRole.DAMPING, LinearRole.STIFFNESS)
     dampers, springs = ([i for i, b in enumerate(branches) if b.element.linear is law] for law in laws)
     positions = np.hstack([places.nodes @ R, places.nodes @ N, places.roads + places.nodes @ V])
+    kinetic, kinetic_road = inertia.nodes @ R, inertia.roads + inertia.nodes @ V
+    inerters = [i for i, b in enumerate(branches) if b.element.linear is LinearRole.MASS]
+    moving, along, elongations = (
+        (rows[dampers], rows[springs])
+        for rows in (np.hstack(rates[:2]), np.hstack(rates), np.hstack(places.elongations))
+    )
     switches = [(branches[i].element.switch, places.own[i]) for i in special]
     names = [[_NUMBER[switch.guard], own] for switch, own in switches if switch is not None]
     jolted = np.any(np.abs(inertia.roads + inertia.nodes @ V) > 1e-12, axis=0)
@@ -137,6 +149,10 @@ def _analyse_layout(layout: _Layout) -> Kinematics:
         lengths=_dense(np.hstack(places.elongations)[special]),
         elements=np.array(names, dtype=np.int64).reshape(len(special), 2),
         ports=pushed,
+        kinetic=kinetic,
+        kinetic_road=kinetic_road,
+        acting=(*inerters, *dampers, *springs),
+        balance=_balance_terms((kinetic, kinetic_road), moving, along, elongations, (pushed @ np.hstack([R, N])).T),
         nonlinear=together,
         needs_acceleration=tuple(jolted | _locked_to(rates, special)),
         moves_elements=tuple(_moved_by(rates, [i for i in special if branches[i].element.acts])),
@@ -144,6 +160,35 @@ def _analyse_layout(layout: _Layout) -> Kinematics:
     )
     _check_locks(found)
     return found
+
+
+def _balance_terms(
+    kinetic: tuple[Matrix, Matrix], moving: Rows, rates: Rows, elongations: Rows, pushed: Matrix
+) -> tuple[Matrix, Matrix]:
+    """The balances of `kernels.modes`, without their forces of nonlinear elements, as a sum over values.
+
+    What each inertia, damper and spring adds, (values, nv * columns), and what is there without any, (nv, columns).
+    Columns are those of M and C_w, then of the right-hand sides: a, g and z, z', z'', forces, 1.
+    """
+    na, nv, nr = kinetic[0].shape[1], moving[0].shape[1], kinetic[1].shape[1]
+    ends = np.cumsum([nv, na, elongations[0].shape[1], nr, nr, pushed.shape[1], 1])
+    on_a, on_gz, on_speed, on_acceleration, on_force, _ = (slice(*pair) for pair in pairwise(ends))
+    counts = np.cumsum([0, len(kinetic[0]), len(moving[0]), len(moving[1])])
+    inertias, dampers, springs = (slice(*pair) for pair in pairwise(counts))
+    terms, without = np.zeros((counts[-1], nv, ends[-1])), np.zeros((nv, ends[-1]))
+    terms[inertias, :na, :na] = _products(kinetic[0], kinetic[0])
+    terms[inertias, :na, on_acceleration] = -_products(*kinetic)
+    resistance = _products(moving[0], rates[0])
+    terms[dampers, :, na:nv] = resistance[:, :, na:nv]
+    terms[dampers, :, on_a], terms[dampers, :, on_speed] = -resistance[:, :, :na], -resistance[:, :, nv:]
+    terms[springs, :, on_gz] = -_products(moving[1], elongations[1])
+    without[:, on_force] = pushed
+    return terms.reshape(counts[-1], without.size), without
+
+
+def _products(left: Matrix, right: Matrix) -> Matrix:
+    """Product of each left row, as a column, and each right row."""
+    return np.asarray(left[:, :, None] * right[:, None, :])
 
 
 _cached_analysis = lru_cache(maxsize=256)(_analyse_layout)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Mapping
 from copy import copy
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,6 @@ from inerter.networks.elements.roles import LinearRole
 from inerter.systems.coordinate_split import RowBlocks
 from inerter.systems.coordinates import clean, pseudo_inverse
 from inerter.systems.graph import Graph, switching
-from inerter.systems.incidence import inertia_values
 from inerter.systems.kinematics import Kinematics, kinematics, with_elements
 from inerter.systems.observe import add, motion
 from inerter.systems.outputs import Output
@@ -69,7 +68,6 @@ class PiecewiseSystem:
     inertia: Matrix  # ... with these inertias
     positions: Matrix  # (ng, nodes): positions from node displacements, and ...
     heights: Matrix  # (ng, roads): ... from those of the roads
-    needs_velocity: tuple[bool, ...]  # of each road, whether its velocity reaches an inertia at once
     needs_acceleration: tuple[bool, ...]  # of each road
     moves_elements: tuple[bool, ...]  # of each road, whether friction or a gap moves with it at once
 
@@ -89,6 +87,15 @@ class PiecewiseSystem:
     def inputs(self) -> int:
         """Number of inputs of a mode."""
         return 3 * len(self.mechanism.roads) + len(self.mechanism.forces)
+
+    @cached_property
+    def needs_velocity(self) -> tuple[bool, ...]:
+        """Of each road, whether its velocity reaches an inertia at once."""
+        na, nv, speed = self.motions[0].shape[1], self.mechanics.balance.shape[0], self.positions.shape[0]
+        on_w, sides = np.split(self.mechanics.balance, [nv], axis=1)
+        first = na + speed + len(self.mechanism.roads)
+        damping = np.hstack([-sides[:, :na], on_w[:, na:], -sides[:, first : first + len(self.mechanism.roads)]])
+        return tuple(np.any(np.abs(_condensed_damping(damping, na)) > 1e-9, axis=0))
 
     @property
     def nonlinear_elements(self) -> tuple[Element, ...]:
@@ -176,29 +183,34 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
 
 
 def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
-    graph, rates, places = known.graph, known.rates, known.places
-    R, _, V = known.motions
-    inertia = inertia_values(mechanism, graph)
-    kinetic, kinetic_road = known.inertia_nodes @ R, known.inertia_roads + known.inertia_nodes @ V
-    _check_inertia(kinetic, inertia)
-    resistance = _sum_over_law(graph, LinearRole.DAMPING, np.hstack(rates[:2]), np.hstack(rates))
+    graph, places = known.graph, known.places
+    coefficients = [graph.branches[i].element.coefficient for i in known.acting]
+    values = np.array([*(coordinate.coefficient for coordinate in mechanism.masses.values()), *coefficients])
+    inertia = values[: len(known.kinetic)]
+    _check_inertia(known.kinetic, inertia)
+    terms, without = known.balance
     return PiecewiseSystem(
         mechanism=mechanism,
         kinematics=known,
         graph=graph,
-        mechanics=_mechanics(known, resistance, kinetic, kinetic_road, inertia),
+        mechanics=ConstantMatrices(
+            balance=(values @ terms).reshape(without.shape) + without,
+            rates=known.moving,
+            lengths=known.lengths,
+            elements=known.elements,
+            limits=np.array([_limits(graph, group) for group in known.nonlinear]).reshape(-1, 2),
+        ),
         nonlinear=tuple(_shares(graph, group) for group in known.nonlinear),
         outputs=known.outputs,
-        rates=rates,
+        rates=known.rates,
         elongations=places.elongations,
         displacements=places.displacements,
         motions=known.motions,
-        kinetic=kinetic,
-        kinetic_road=kinetic_road,
+        kinetic=known.kinetic,
+        kinetic_road=known.kinetic_road,
         inertia=inertia,
         positions=places.nodes,
         heights=places.roads,
-        needs_velocity=tuple(np.any(np.abs(_condensed_damping(resistance, R.shape[1])) > 1e-9, axis=0)),
         needs_acceleration=known.needs_acceleration,
         moves_elements=known.moves_elements,
     )
@@ -216,33 +228,6 @@ def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
             )
 
 
-def _mechanics(
-    known: Kinematics, resistance: Matrix, kinetic: Matrix, kinetic_road: Matrix, inertia: Matrix
-) -> ConstantMatrices:
-    """Left and right-hand sides of the balances of `kernels.modes`, and the rows of what can be locked."""
-    R, N, _ = known.motions
-    moving, na, nw = np.hstack(known.rates[:2]), R.shape[1], N.shape[1]
-    momentum = inertia[:, None] * np.hstack([kinetic, kinetic_road])
-    left = resistance[:, : na + nw].copy()
-    left[:, :na] = 0.0
-    left[:na, :na] = kinetic.T @ momentum[:, :na]
-    right = [
-        -resistance[:, :na],
-        -_sum_over_law(known.graph, LinearRole.STIFFNESS, moving, np.hstack(known.places.elongations)),
-        -resistance[:, na + nw :],
-        -np.vstack([kinetic.T @ momentum[:, na:], np.zeros((nw, kinetic_road.shape[1]))]),
-        (known.ports @ np.hstack([R, N])).T,
-        np.zeros((na + nw, 1)),
-    ]
-    return ConstantMatrices(
-        balance=np.hstack([left, *right]),
-        rates=known.moving,
-        lengths=known.lengths,
-        elements=known.elements,
-        limits=np.array([_limits(known.graph, group) for group in known.nonlinear]).reshape(-1, 2),
-    )
-
-
 def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
     """Share of the force of a group for each of its branches; frictions in parallel share it by their sizes."""
     sizes = {i: graph.branches[i].element.coefficient for i in group}
@@ -253,12 +238,6 @@ def _shares(graph: Graph, group: dict[int, int]) -> dict[int, float]:
 def _limits(graph: Graph, group: dict[int, int]) -> list[float]:
     """Limits of the force or elongation in the middle state of a group; sums over its elements."""
     return [sum(ends) for ends in zip(*(graph.branches[i].element.checked_limits() for i in group), strict=True)]
-
-
-def _sum_over_law(graph: Graph, law: LinearRole, left: Matrix, right: Matrix) -> Matrix:
-    """Sum over the elements of one law of left row x coefficient x right row."""
-    values = np.array([b.element.coefficient if b.element.linear is law else 0.0 for b in graph.branches])
-    return np.ascontiguousarray(left.T @ (values[:, None] * right))
 
 
 def _condensed_damping(damping: Matrix, na: int) -> Matrix:

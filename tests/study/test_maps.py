@@ -105,7 +105,7 @@ def test_a_map_goes_on_to_the_same_bytes(study: Study, folder: Path, tmp_path: P
 def test_a_map_is_told_in_words_that_fit(data: xr.Dataset) -> None:
     text = terminal_text(data)
     assert max(map(len, text.splitlines())) <= WIDTH
-    assert "over sprung mass and k" in text
+    assert "over sprung mass in kg in rows and k in kN/m in columns" in " ".join(text.split())
     better = data["improvement"].sel(layout="S2", index="J1").squeeze("method")
     most = better.where(better == better.max(), drop=True)
     place = f"sprung mass = {float(most['vehicle.sprung_mass'][0]):g} kg, k = {float(most['k'][0]) / 1e3:g} kN/m"

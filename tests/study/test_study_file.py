@@ -260,9 +260,9 @@ baseline = "S1"
 sweep = { k = { from = "1 N/m", to = "3 N/m", points = 11, spacing = "log" } }
 """
     names = ('S1 = "k | c"', 'S1 = "k | c"\n"S.3+" = "(k | c) - b"')
-    title = ('"A quarter car"', r'"\"Käfer\" \\ 🚗 \u007f\n\u0000"')
+    title = ('"A quarter car"', r'"\"Käfer\" \\ 🚗 \u00e9"')
     study = load(GOOD, ("[study]", settings), names, title)
-    assert study.title == '"Käfer" \\ 🚗 \x7f\n\0'
+    assert study.title == '"Käfer" \\ 🚗 é'
     assert_survives(study, tmp_path)
 
 

@@ -30,7 +30,7 @@ from inerter.kernels.lanes import GROUP, as_numbers, constant_at, in_groups, lan
 BLOCK = 16  # steps that are judged together
 _FIRST = 4  # the same in the first block: where one alarm follows another, all steps made beyond it are in vain
 _REGISTERS = 28  # of the processor, without those for sums
-WORTH_COMPILING = 10_000_000  # steps of one shape: compiled they take 0.1 s less, and compiling takes some 0.3 s
+WORTH_COMPILING = 1_000_000  # steps of one shape: compiled they take 10 ms less, as loading code that is kept takes
 _STEPS: Counter[tuple[MarchShape, tuple[int, ...]]] = Counter()  # of each shape, in this process
 _EXTREMES = 7  # rows of `Path.extremes`, see there
 _STATES, _INPUTS, _BENDS, _LEAST, _MOST, _OF_BLOCK, _OF_STEP = range(_EXTREMES)

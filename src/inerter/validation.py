@@ -37,17 +37,20 @@ def use_python_numbers(of: object) -> None:
     numbers are replaced likewise; whatever is not a finite number stays, to be refused.
     """
     for name, value in vars(of).items():
-        if type(value) is float or value is None:
+        if type(value) in _OF_PYTHON:  # as nearly always
             continue
         if isinstance(value, dict):
-            if any(type(number) is not float for number in value.values()):
+            if not _OF_PYTHON.issuperset(map(type, value.values())):
                 object.__setattr__(of, name, {key: _python_number(number) for key, number in value.items()})
         elif (number := _python_number(value)) is not value:
             object.__setattr__(of, name, number)
 
 
+_OF_PYTHON = frozenset({float, int, bool, str, tuple, type(None)})
+
+
 def _python_number(value: object) -> object:
-    if type(value) in (float, int) or not is_number(value):
+    if type(value) in _OF_PYTHON or not is_number(value):
         return value
     return int(value) if isinstance(value, Integral) else float(value)
 

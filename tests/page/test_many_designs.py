@@ -102,8 +102,8 @@ def _left(visitor: Visitor, session: Any) -> tuple[float, float]:
     return found["JSHeapUsedSize"], found["Nodes"]
 
 
-@pytest.mark.marathon
-def test_heap_and_nodes_are_constant_over_a_thousand_steps_of_a_slider(visitor: Visitor) -> None:
+@pytest.mark.parametrize("steps", [100, pytest.param(1000, marks=pytest.mark.marathon)])
+def test_heap_and_nodes_are_constant_over_steps_of_a_slider(visitor: Visitor, steps: int) -> None:
     """Once the answers that are kept, and the steps to undo, are as many as they become."""
     page = visitor.page
     visitor.settled()
@@ -113,9 +113,9 @@ def test_heap_and_nodes_are_constant_over_a_thousand_steps_of_a_slider(visitor: 
         page.evaluate(STEPS, count)
         page.wait_for_timeout(400)
         page.wait_for_selector(".vehicle[data-being=current]")
-    page.evaluate(STEPS, 1000)
+    page.evaluate(STEPS, steps)
     heap, nodes = _left(visitor, session)
-    page.evaluate(STEPS, 1000)
+    page.evaluate(STEPS, steps)
     later, more = _left(visitor, session)
     print(f"heap {heap / 1e6:.2f} to {later / 1e6:.2f} MB, nodes {nodes:.0f} to {more:.0f}")
     assert later - heap < 0.5e6

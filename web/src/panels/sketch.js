@@ -58,13 +58,8 @@ const kindAt = (state, tree, path, name) =>
 /** Its elements are those of the study, or, where the library gave the tree, of the kinds that the tree says.
  * @param {{state: State, tree: import("../network/algebra.js").Tree | null, small?: boolean}} props */
 export function Sketch({ state, tree, small = false }) {
-  const { parts, about } = state;
-  return useMemo(() => sketched(state, tree, small ? SMALL : WIDTH), [tree, small, parts, about]);
-}
-
-/** @param {State} state @param {import("../network/algebra.js").Tree | null} tree @param {number} width */
-function sketched(state, tree, width) {
-  const plan = tree && drawing(tree);
+  const width = small ? SMALL : WIDTH;
+  const plan = useMemo(() => tree && drawing(tree), [tree]); // its elements would hold on to the page of that render
   if (!tree || !plan) return html`<svg class="sketch" width=${width} height=${HEIGHT} aria-hidden="true"></svg>`;
   const [left, right] = [plan.left + 2, plan.right + 2];
   return html`<svg class="sketch" width=${width} height=${HEIGHT} aria-hidden="true"

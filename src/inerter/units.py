@@ -285,10 +285,8 @@ def _power_of_angle(unit: str) -> float:
     """Power of an angle in a unit; each of its names by itself, as the factor of all together may overflow."""
     registry, power = _registry(), 0.0
     for name, exponent in registry.parse_units_as_container(unit).items():
-        product = registry.get_base_units(registry.parse_units(name) * registry.meter)[
-            1
-        ]  # pint remembers its own hertz alone
-        in_base: Mapping[str, Any] = dict((1.0 * product).unit_items())
+        with_metre = registry.parse_units(name) * registry.meter  # of hertz alone pint remembers its own base units
+        in_base: Mapping[str, Any] = dict((1.0 * registry.get_base_units(with_metre)[1]).unit_items())
         power += float(str(exponent)) * float(in_base.get("radian", 0.0))
     return power
 

@@ -36,7 +36,7 @@ class ExecutorResult(Generic[Result]):
 def check_all_results(found: int, total: int) -> None:
     """Raise `WorkError` unless an executor has returned results for as many items as it was given."""
     if found != total:
-        raise WorkError(f"The executor returned results for {found} of {total} parts of the work only.")
+        raise WorkError(f"The executor returned results for only {found} of {total} parts of the work.")
 
 
 def check_executor(executor: object) -> None:

@@ -123,6 +123,39 @@ def test_the_error_bound_holds_against_the_densities_that_were_measured(seed):
             assert line <= abs(kept / found.value - 1.0) + 3.6e-3  # by the filter alone
 
 
+@pytest.mark.parametrize("seed", sampled(range(8), [2], kept=2))
+def test_a_mean_over_speeds_is_off_by_the_mean_of_the_errors_with_their_signs(seed):
+    rng = np.random.default_rng([8615, seed])
+    spectrum, slow, fast = measured(rng, 2.0), float(rng.uniform(3.0, 10.0)), float(rng.uniform(20.0, 40.0))
+    car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3))
+    speeds, shares = (slow, fast), (0.4, 0.6)
+    use = it.Conditions([it.Condition(share, road={"speed": v}) for share, v in zip(shares, speeds, strict=True)])
+    found = it.evaluate(car, use.mean(it.RideComfort(spectrum.road(slow))), it.Norm())
+
+    def line(n):
+        return spectrum.standard * 0.01 / n**2
+
+    true = sum(
+        s * by_quadrature(car, "sprung_acceleration", spectrum, v)(line) for s, v in zip(shares, speeds, strict=True)
+    )
+    (bound,) = (source.bound for source in found.error_sources if source.name == "line of the road")
+    assert bound == pytest.approx(abs(true / found.value - 1.0), abs=1e-4)
+
+
+def test_conditions_on_measured_roads_of_their_own_add_their_errors():
+    rng = np.random.default_rng(8616)
+    first, second = (measured(rng, 2.0).road(20.0) for _ in range(2))
+    car = it.QuarterCar(250.0, 35.0, 1.5e5, it.Spring(2e4) | it.Damper(1.5e3))
+    use = it.Conditions([it.Condition(road=first), it.Condition(road=second)])
+    found = it.evaluate(car, use.mean(it.RideComfort(first)), it.Norm())
+    parts = found.in_conditions
+    assert found.error_bound * found.value == pytest.approx(0.5 * sum(one.error_bound * one.value for one in parts))
+    assert found.shared_errors == {}
+    same = it.evaluate(car, it.Conditions([it.Condition(road=first)] * 2).mean(it.RideComfort(first)), it.Norm())
+    assert same.error_bound == pytest.approx(parts[0].error_bound)
+    assert same.shared_errors.keys() == parts[0].shared_errors.keys()
+
+
 @pytest.mark.parametrize("seed", sampled(range(8), [0], kept=2))
 def test_two_values_on_one_measured_road_share_its_errors(seed):
     """Improvements on the measured densities, with longer and with shorter waves missing or twice as much."""
@@ -200,10 +233,12 @@ class Driven:
         return 1.0 + self.found.shared_errors["line of the road"][0]
 
 
-def driven_members(seed, length, keep_waviness):
-    """Two random quarter cars by two indices on a Gaussian profile, cut out of one at least twice as long."""
-    rng, step = np.random.default_rng([8611, round(length), seed]), 0.1
-    speed, waviness, points = rng.uniform(10.0, 30.0), rng.uniform(1.8, 2.2), round(length / step)
+def gaussian_road(rng, length, waviness):
+    """Wavenumbers of a Gaussian road, Fourier coefficients of its heights, the part of anything on it that is a
+    profile of this length, and the spectrum of that profile.
+    """
+    step = 0.1
+    points = round(length / step)
     count = points * (8 if length < 5e3 else 2)
     n = np.arange(1, count // 2 + 1) / (count * step)
     noise = rng.standard_normal((2, n.size)).T @ [1.0, 1.0j]
@@ -212,7 +247,15 @@ def driven_members(seed, length, keep_waviness):
     def section(coefficients):
         return np.fft.irfft(np.concatenate([[0.0], coefficients]), count)[count // 2 :][:points]
 
-    spectrum = it.road_spectrum(it.Profile(step * np.arange(points), section(lines)), sampling="filtered")
+    profile = it.Profile(step * np.arange(points), section(lines))
+    return n, lines, section, it.road_spectrum(profile, sampling="filtered")
+
+
+def driven_members(seed, length, keep_waviness):
+    """Two random quarter cars by two indices on a Gaussian profile, cut out of one at least twice as long."""
+    rng = np.random.default_rng([8611, round(length), seed])
+    speed, waviness = rng.uniform(10.0, 30.0), rng.uniform(1.8, 2.2)
+    n, lines, section, spectrum = gaussian_road(rng, length, waviness)
     road = it.measured_road(spectrum, speed) if keep_waviness else spectrum.road(speed)
     fine = np.geomspace(1e-4, 300.0, 6001)
     density = LEVEL * (fine / 0.1) ** -waviness
@@ -257,6 +300,32 @@ def test_the_scatter_of_the_spectrum_of_a_profile_is_in_the_bound(length, count,
         }
         assert 0.75 < rms(scores["on_road"]) < 1.25  # neither too narrow nor too wide
         assert rms(scores["on_profile"]) < rms(scores["on_road"])
+
+
+@pytest.mark.parametrize(("length", "count"), LENGTHS)
+def test_a_mean_over_speeds_has_the_scatter_of_the_spectrum_by_its_bands(length, count):
+    beyond, scores, sizes = [], [], []
+    for seed in range(count):
+        rng = np.random.default_rng([8617, round(length), seed])
+        waviness, speeds = rng.uniform(1.8, 2.2), rng.uniform([4.0, 20.0], [10.0, 40.0])
+        fine = np.geomspace(1e-4, 300.0, 6001)
+        spectrum = gaussian_road(rng, length, waviness)[-1]
+        spring, damper = np.exp(rng.uniform(np.log([1e4, 700.0]), np.log([5e4, 4e3]))).tolist()
+        car = it.QuarterCar(300.0, 35.0, 2e5, it.Spring(spring) | it.Damper(damper))
+        road, density = it.measured_road(spectrum, float(speeds[0])), LEVEL * (fine / 0.1) ** -waviness
+        use = it.Conditions([it.Condition(road={"speed": speed}) for speed in speeds.tolist()])
+        found = it.evaluate(car, use.mean(it.RideComfort(road)), it.Norm())
+        gains = [drive(car, spring, damper, 1.0, fine, speed)[it.RideComfort] for speed in speeds]
+        true = np.mean([math.sqrt(np.trapezoid(np.abs(gain) ** 2 * density, fine)) for gain in gains]) / found.value
+        bounds = {source.name: source.bound for source in found.error_sources}
+        half = 0.5 * bounds["length of the profile"]
+        beyond.append(abs(true - 1.0) > found.error_bound)
+        scores.append((true / (1.0 + found.shared_errors["line of the road"][0]) - 1.0) / half)
+        parts = sum(one.value * math.hypot(*one.shared_errors["length of the profile"]) for one in found.in_conditions)
+        sizes.append(4.0 * half * found.value / parts)
+    assert np.mean(beyond) <= 0.05
+    assert 0.75 < rms(scores) < 1.25
+    assert np.median(sizes) < 0.95  # of the sum of both errors
 
 
 @pytest.mark.parametrize(("length", "count"), LENGTHS)

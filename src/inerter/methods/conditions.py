@@ -125,6 +125,11 @@ class Conditions:
         total = sum(one.share for one in self.conditions)
         return tuple(one.share / total for one in self.conditions)
 
+    @property
+    def are_on_one_road(self) -> bool:
+        """Whether all conditions have the same measured road, perhaps at different speeds."""
+        return len({one.road.shape if isinstance(one.road, Road) else None for one in self.conditions}) == 1
+
 
 @dataclass(frozen=True)
 class OverConditions(OfIndex):
@@ -175,7 +180,7 @@ class OverConditions(OfIndex):
             sources = of_worst(found, worst.value)
             over = dataclasses.replace(worst, status=status, notes=notes, error_sources=sources)
         else:
-            over = _mean(found, self.conditions.shares, status, notes)
+            over = _mean(found, self.conditions, status, notes)
         return dataclasses.replace(over, in_conditions=tuple(found))
 
     def estimate_many(self, vehicle: Vehicle, method: Method, points: Mapping[str, Array]) -> Array:
@@ -215,11 +220,12 @@ def _least_known(values: Sequence[float]) -> int:
     return next(i for i, value in enumerate(values) if not np.isfinite(value))
 
 
-def _mean(found: Sequence[Estimate], shares: Sequence[float], status: Status, notes: tuple[str, ...]) -> Estimate:
-    """The mean by shares; its error is the sum of all, which is the most: the conditions may share their roads."""
+def _mean(found: Sequence[Estimate], conditions: Conditions, status: Status, notes: tuple[str, ...]) -> Estimate:
+    """The mean by shares; its standard error is the sum of all, which is the most, as conditions may share roads."""
+    shares = conditions.shares
     value = sum(share * one.value for share, one in zip(shares, found, strict=True))
     unit = found[0].unit
-    sources = of_weighted_sum(found, shares)
+    sources = of_weighted_sum(found, shares, on_one_road=conditions.are_on_one_road)
     if all(one.standard_error is None for one in found):
         return Estimate(value, unit, status, notes=notes, error_sources=sources)
     error = sum(share * (one.standard_error or 0.0) for share, one in zip(shares, found, strict=True))

@@ -44,8 +44,13 @@ def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: 
     return replace(estimate, status=status, error_sources=(*sources, *estimate.error_sources))
 
 
-def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tuple[ErrorSource, ...]:
-    """Error sources of a sum of estimates with positive weights; none where one of them names none."""
+def of_weighted_sum(
+    parts: Sequence[Estimate], weights: Sequence[float], *, on_one_road: bool = True
+) -> tuple[ErrorSource, ...]:
+    """Error sources of a sum of estimates with positive weights; none where one of them names none.
+
+    Effects of errors of one road add up with their signs and by their bands, all other errors by their sizes.
+    """
     total = sum(weight * part.value for weight, part in zip(weights, parts, strict=True))
     if not math.isfinite(total) or total == 0.0 or not all(part.error_sources for part in parts):
         return ()
@@ -54,8 +59,10 @@ def of_weighted_sum(parts: Sequence[Estimate], weights: Sequence[float]) -> tupl
         share = weight * abs(part.value / total)
         for source in part.error_sources:
             known = found.get(source.name, ErrorSource(source.name, 0.0))
-            shared = tuple(a + share * b for a, b in zip_longest(known.shared, source.shared, fillvalue=0.0))
-            found[source.name] = ErrorSource(source.name, known.bound + share * source.bound, shared)
+            effects = source.shared if on_one_road else ()
+            shared = tuple(a + share * b for a, b in zip_longest(known.shared, effects, fillvalue=0.0))
+            alone = known.bound - math.hypot(*known.shared) + share * (source.bound - math.hypot(*effects))
+            found[source.name] = ErrorSource(source.name, alone + math.hypot(*shared), shared)
     return tuple(found.values())
 
 

@@ -14,9 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import ExportError, LinearSystemError
 from inerter.exports.refusals import delay_notes, refuse_nonlinear
-from inerter.norms.response import frequency_response
+from inerter.formatting import format_number
+from inerter.norms.response import frequency_response, resonant_range
 from inerter.systems.assemble import state_space
-from inerter.systems.descriptor import Descriptor, describe
+from inerter.systems.descriptor import Descriptor, describe, describe_with_parameters
+from inerter.systems.exact_matrices import close_exactly, rounded_stacks
 from inerter.systems.graph import linear_graph
 from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import input_unit, velocity_of
@@ -29,6 +31,11 @@ if TYPE_CHECKING:
 
 Matrix = NDArray[np.float64]
 FORMS = ("state-space", "descriptor")
+_HALF_DIGIT = float(np.finfo(float).eps) / 2.0
+_GROWTH = 1e-3  # of the oscillations at which rounding is looked at, a radian
+_EVERY = 6  # frequencies of `resonant_range`
+_SILENT = 1e-12  # of the largest response of an output: what responds less is measured by that
+_TOLD_ROUNDING, _MOST_ROUNDING = 1e-9, 1e-6  # of the largest response: more is told by a note, or refused
 
 
 @dataclass(frozen=True)
@@ -68,6 +75,7 @@ class NamedSystem:
     E: Matrix | None = None
     notes: tuple[str, ...] = ()  # what the model leaves out, a sentence each
     title: str = "linear model"
+    rounding: float = 0.0  # a bound of what rounding its entries changes, of the largest response of each channel
 
     def response(self, omega: ArrayLike) -> NDArray[np.complex128]:
         """Frequency response (len(omega), outputs, inputs), omega in rad/s."""
@@ -130,8 +138,9 @@ def named_system(
     as the notes tell. The form "descriptor" keeps the unknowns that no inertia carries, such as motions of nodes
     without mass; it has the values of elements themselves in its matrices.
 
-    Raises `ExportError` for friction or gaps without `linear`, or for a system with delays; `DesignError` if a value is
-    free, `MechanismError` or `LinearSystemError` as `state_space` does.
+    Raises `ExportError` for friction or gaps without `linear`, for a system with delays, or for values so many decades
+    apart that matrices of doubles have lost the responses; `DesignError` if a value is free, `MechanismError` or
+    `LinearSystemError` as `state_space` does.
 
     >>> import inerter as it
     >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
@@ -151,9 +160,25 @@ def named_system(
     columns = None if inputs is None else check_names("inputs", inputs)
     rows = None if outputs is None else check_names("outputs", outputs)
     descriptor = describe(mechanism, columns, rows)
-    made = _state_space(mechanism, descriptor, columns, rows) if form == FORMS[0] else _descriptor(descriptor)
+    if descriptor.precision_warning:
+        raise LinearSystemError(descriptor.precision_warning)
+    known = describe_with_parameters(mechanism, descriptor.inputs, descriptor.outputs)
+    numbers = known or (descriptor, {})
+    whole, order = close_exactly(*numbers), len(descriptor.states)
+    doubt: Matrix | float = 0.0
+    if form == FORMS[0]:
+        system = state_space(mechanism, columns, rows)
+        through = whole[order:, order:]
+        through[system.D == 0.0] = 0.0  # products of levers are rounded too
+        states = tuple(map(NamedQuantity, system.states, state_units(descriptor)))
+        made = NamedSystem(*_blocks(whole, order), states, *_signals(descriptor))
+        if known is None and system.fine is not None:
+            doubt = system.fine.errors
+    else:
+        made = _descriptor(descriptor, rounded_stacks(*numbers))
     notes = [f"{note}." for note in linear_graph(mechanism).notes] + delay_notes(mechanism, descriptor.inputs)
-    return replace(made, notes=tuple(notes), title=title or "linear model")
+    made = replace(made, notes=tuple(notes), title=title or "linear model")
+    return _with_rounding(made, whole[:order, :order], doubt)
 
 
 def has_massless_nodes(mechanism: Mechanism) -> bool:
@@ -161,19 +186,14 @@ def has_massless_nodes(mechanism: Mechanism) -> bool:
     return len(linear_graph(mechanism).nodes) > len(mechanism.masses)
 
 
-def _state_space(
-    mechanism: Mechanism, descriptor: Descriptor, inputs: Sequence[str] | None, outputs: Sequence[str] | None
-) -> NamedSystem:
-    system = state_space(mechanism, inputs, outputs)
-    states = tuple(map(NamedQuantity, system.states, state_units(descriptor)))
-    return NamedSystem(system.A, system.B, system.C, system.D, states, *_signals(descriptor))
+def _blocks(whole: Matrix, order: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    """A, B, C and D of the block matrix [A B; C D]."""
+    return whole[:order, :order], whole[:order, order:], whole[order:, :order], whole[order:, order:]
 
 
-def _descriptor(d: Descriptor) -> NamedSystem:
+def _descriptor(d: Descriptor, stacks: Sequence[Matrix]) -> NamedSystem:
     """The equations of the descriptor with its unknowns as further states, which have no rates."""
-    if d.precision_warning:
-        raise LinearSystemError(d.precision_warning)
-    S, R, F, Y_eta, Y_x, Y_u = (stack[0].astype(float) for stack in d.stacks)
+    S, R, F, Y_eta, Y_x, Y_u = stacks
     n, e = R.shape[1], S.shape[0]
     named = zip(d.states, state_units(d), strict=True)
     states = tuple(NamedQuantity(*one) for one in (*named, *unknowns(d)))
@@ -181,6 +201,48 @@ def _descriptor(d: Descriptor) -> NamedSystem:
     A = np.block([[d.X_x, d.X_eta], [scale * R, -scale * S]])
     E = np.diag(np.concatenate([np.ones(n), np.zeros(e)]))
     return NamedSystem(A, np.vstack([d.X_u, scale * F]), np.hstack([Y_x, Y_eta]), Y_u, states, *_signals(d), E)
+
+
+def _with_rounding(model: NamedSystem, dynamics: Matrix, doubt: Matrix | float) -> NamedSystem:
+    """The model with the bound of its rounding over the resonances of `dynamics`, its A as a state space.
+
+    Raises `ExportError` where the bound exceeds `_MOST_ROUNDING`.
+    """
+    with np.errstate(all="ignore"):
+        rounding = _bound_rounding(model, resonant_range([dynamics])[::_EVERY], doubt)
+    if not rounding <= _MOST_ROUNDING:
+        raise ExportError(
+            "The values of this design lie so many decades apart that its matrices, rounded to doubles, have lost its "
+            f"responses: by up to {format_number(rounding, 2)} of the largest; {format_number(_MOST_ROUNDING)} is "
+            "allowed. Try the other form (a descriptor mostly loses less than a state space), or leave out what hardly "
+            "matters; indices do not need these matrices."
+        )
+    note = f"Rounding of these matrices changes responses by up to {format_number(rounding, 2)} of the largest."
+    return replace(model, rounding=rounding, notes=(*model.notes, note) if rounding > _TOLD_ROUNDING else model.notes)
+
+
+def _bound_rounding(model: NamedSystem, omega: Matrix, doubt: Matrix | float) -> float:
+    """Largest change of a response by rounding, over the largest response of its channel, to first order.
+
+    `doubt` are errors of the entries of [A B; C D] beside rounding. At s = (j + 0.001) omega: an oscillation that grows
+    a little has a finite response at an undamped pole, of which no digit would be left on the axis itself.
+    """
+    A, B, C, D = model.A, model.B, model.C, model.D
+    off = _HALF_DIGIT * np.abs(np.block([[A, B], [C, D]])) + doubt
+    try:
+        inverse = np.linalg.inv(
+            (1j + _GROWTH) * omega[:, None, None] * (np.eye(len(A)) if model.E is None else model.E) - A
+        )
+    except np.linalg.LinAlgError:
+        return np.inf
+    left, right = C @ inverse, inverse @ B
+    size = np.abs(left @ B + D).max(axis=0, initial=0.0)
+    before, after = (np.broadcast_to(np.eye(n), (omega.size, n, n)) for n in D.shape)
+    left, right = np.concatenate([np.abs(left), before], axis=2), np.concatenate([np.abs(right), after], axis=1)
+    error = (left @ off @ right).max(axis=0, initial=0.0)
+    whole = size.max(axis=1, keepdims=True, initial=0.0)
+    size = np.where(size < _SILENT * whole, whole, size)
+    return float(np.max(error / size, initial=0.0, where=size != 0.0))
 
 
 def _signals(d: Descriptor) -> tuple[Quantities, Quantities]:
@@ -207,7 +269,7 @@ def _of_system(system: LinearSystem, form: str, title: str) -> NamedSystem:
     states, inputs, outputs = (
         tuple(map(NamedQuantity, names)) for names in (system.states, system.inputs, system.outputs)
     )
-    return NamedSystem(
+    made = NamedSystem(
         system.A,
         system.B,
         system.C,
@@ -218,6 +280,7 @@ def _of_system(system: LinearSystem, form: str, title: str) -> NamedSystem:
         notes=tuple(system.notes),
         title=title or "linear model",
     )
+    return made if system.fine is None else _with_rounding(made, system.A, system.fine.errors)
 
 
 def _without_points(labels: Sequence[str]) -> list[str]:

@@ -170,3 +170,14 @@ def test_values_that_repeat_anyway_are_not_held() -> None:
     still = np.concatenate([np.full(2000, 1e-3), x])
     coarse = np.rint(np.cos(6.0 * time) * 20.0 + 0.1 * np.random.default_rng(1).standard_normal(time.size))
     assert all(held_value_instants(values) == [] for values in (x, still, coarse, 10.0 * np.sign(np.sin(6.0 * time))))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_table_that_has_not_begun_to_move_is_not_held(seed: int) -> None:
+    """A motion that grows from rest within three seconds, or ends so, with six samples in a period."""
+    random, time = np.random.default_rng([seed, 21]), np.arange(300) / 60.0
+    s = np.minimum(time / 3.0, 1.0)
+    x = 5e-3 * s**3 * (10.0 - 15.0 * s + 6.0 * s**2) * np.sin(2.0 * np.pi * 10.0 * time + random.uniform(0.0, 6.0))
+    x = np.rint((x + 2e-7 * random.standard_normal(x.size)) * 1e6) * 1e-6
+    assert held_value_instants(x) == []
+    assert held_value_instants(x[::-1]) == []

@@ -28,6 +28,7 @@ _WIDEST = 3  # samples of a spike
 _HELD = 4  # equal samples in a row, at least
 _LOCAL = 100  # samples to either side, which say how often values repeat by chance
 _RARE = 1e-3  # expected number of such repetitions in a record that holds none
+_REST = 3.0  # steps of a channel, within which its values are those before the motion begins, or after it has ended
 _COMMON = 0.2  # of the samples: repetitions of a channel whose values repeat anyway, as friction without noise
 _BEFORE, _DEGREE = 6, 2  # samples on either side of a held value, and the degree of the polynomial through them
 _JOINT = 10.0  # standard deviations between the extrapolations from both sides
@@ -118,7 +119,8 @@ def _local_scale(deviation: Vector) -> Vector:
 def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
     """Runs of at least four equal values where noise or motion would have changed them.
 
-    A clipped channel, one at rest and one whose values repeat all the time have no held values. A channel that is not
+    A clipped channel, one at rest and one whose values repeat all the time have no held values; nor has a record before
+    its motion begins, or after it has ended, where few samples in a period make noise look larger than steps. A channel that is not
     `smooth` may rest and continue with a jump, as a force does where backlash is open: there only noise is decisive.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
@@ -135,9 +137,11 @@ def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
         inside[a:b] = True
     step, noise = resolution(values), _noise(values)
     ends = float(values.max()), float(values.min())
+    away_from = [np.abs(values - values[end]) > _REST * step for end in (0, -1)]
+    begun, ended = int(np.argmax(away_from[0])), values.size - int(np.argmax(away_from[1][::-1]))
     found = []
     for a, b in candidates:
-        if values[a] in ends:
+        if values[a] in ends or a < begun or b > ended:
             continue
         away, scatter = _departure(values, a, b)
         moved = smooth and away > max(3.0 * step, 5.0 * noise, 5.0 * scatter, 1e-9 * float(np.ptp(values)))

@@ -61,3 +61,17 @@ def test_sound_load_cells_are_not_suspected(noise: float, seed: int) -> None:
     assert solution.misfit.is_noise_limited
     found, _ = explained(solution)
     assert found == []
+
+
+@pytest.mark.parametrize(("seed", "every"), [(0, 28), (5, 28), (6, 12)])
+def test_a_gain_by_load_is_named_where_the_validation_data_are_too_few_to_show_it(seed: int, every: int) -> None:
+    """Of so few samples, the fitted part shows what a value is off by, and the validation data only their noise."""
+    whole = read(Suspect.NONLINEAR_GAIN, 0.3, seed)
+    record = it.Record(whole.time[::every], whole.displacement[::every], whole.force[::every])
+    solution = quick_fit(record, MODELS["friction"], TRUE)
+    assert solution.misfit.is_noise_limited
+    space, best = solution.problem.space, solution.optimum
+    errors = dict(zip(space.names, best.errors * space.slopes(best.point), strict=True))
+    assert abs(space.values_by_name(best.point)["b"] - TRUE["b"]) > 3.0 * errors["b"]
+    (first, *_), _ = explained(solution)
+    assert first.name is Suspect.NONLINEAR_GAIN

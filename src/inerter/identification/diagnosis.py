@@ -50,6 +50,7 @@ _STEP = 0.02  # of the detectable size of an unknown, for differences
 _SEEN, _SURE = 0.1, 30.0  # of a residual that noise may hide: share that is explained, and Fisher's ratio of it
 _CLEAR = 20.0  # Fisher's ratio of a nonlinear load cell
 _LIKE = 0.5  # of the share of the best explanation of such a residual: another one
+_OF_SENSORS = (Suspect.FILTERED_FORCE, Suspect.ASYMMETRIC_GAIN, Suspect.NONLINEAR_GAIN)  # like a law of the device
 _SHAFTS = (Suspect.ELASTIC, Suspect.RIGID, Suspect.BACKLASH)  # a stiff one also changes the errors of the simulation
 _AT_BOUND, _WIDER = 1e-3, 30.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
 
@@ -79,7 +80,8 @@ class Causes:
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
             if self.hidden is Hidden.LAW:
                 taken = (*_SHAFTS, *(h.name for h in problem.assumed))
-                known = [h for h in laws(problem) if h.name not in taken]
+                known = [*laws(problem), *nonlinear_load_cells(problem.experiments)]
+                known = [h for h in known if h.name not in taken]
             elif self.hidden is Hidden.LOAD_CELL:
                 known = nonlinear_load_cells(problem.experiments)
             elif not self.before.is_noise_limited:
@@ -119,13 +121,21 @@ def explanations(
     that with fewer unknowns is the more likely.
     """
     causes = Causes(before, places, point=optimum.point)
-    every = causes.of(problem)
     known = replace(problem, whitenings=by.fitted, horizon=1.0)
+    every = causes.of(known)
     slopes = known.jacobian(optimum.point, steps_of(optimum))
-    if not every:
-        hidden = (replace(causes, made=None, hidden=kind) for kind in (Hidden.LAW, Hidden.LOAD_CELL))
-        causes = next((c for c in hidden if _is_hidden(known, optimum, slopes, c)), causes)
-        every = causes.of(problem)
+    if every:
+        return _fit_all(causes, by, optimum, slopes, known)
+    hidden = (replace(causes, made=None, hidden=kind) for kind in (Hidden.LAW, Hidden.LOAD_CELL))
+    likely = (c for c in hidden if _is_hidden(known, optimum, slopes, c))
+    return next(filter(None, (_fit_all(c, by, optimum, slopes, known) for c in likely)), [])
+
+
+def _fit_all(
+    causes: Causes, by: NoiseReference, optimum: BestFit, slopes: Matrix, known: FitProblem
+) -> list[Explanation]:
+    """The hypotheses fitted: all of them roughly, and the best to convergence."""
+    every, before = causes.of(known), causes.before
     rough = partial(_fit_roughly, causes, by, optimum, slopes)
     first = map_problems(
         rough, [(known, n) for n in range(len(every))], over_threads, counter("possible causes", len(every))
@@ -177,7 +187,8 @@ def _is_hidden(problem: FitProblem, optimum: BestFit, slopes: Matrix, causes: Ca
     residual = problem.residual(optimum.point)
     left = project(residual)
     square = float(left @ left)
-    for hypothesis in (h for h in causes.of(problem) if h.name is not Suspect.FILTERED_FORCE):
+    competing = _OF_SENSORS if causes.hidden is Hidden.LAW else ()
+    for hypothesis in (h for h in causes.of(problem) if h.name not in competing):
         other = _with_hypothesis(problem, hypothesis)
         for point, _ in _starting_points(problem, optimum, other, hypothesis):
             change = other.residual(point) - residual
@@ -390,7 +401,9 @@ def _explanation(
     parts = list(zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True))
     shares = [_explained_share(now, then) for now, then, limit in parts if then > limit]
     if causes.hidden is not Hidden.NONE:
-        shares = [1.0 - (now / then) ** 2 for now, then, _ in parts if then > 0.0]
+        # Fisher's ratio has shown the load cell already, of which the validation data may be too few to show anything.
+        counted = parts[:1] if causes.hidden is Hidden.LOAD_CELL else parts
+        shares = [1.0 - (now / then) ** 2 for now, then, _ in counted if then > 0.0]
     return Explanation(
         name=hypothesis.name,
         explained=min(shares, default=1.0),

@@ -120,8 +120,9 @@ def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
     """Runs of at least four equal values where noise or motion would have changed them.
 
     A clipped channel, one at rest and one whose values repeat all the time have no held values; nor has a record before
-    its motion begins, or after it has ended, where few samples in a period make noise look larger than steps. A channel that is not
-    `smooth` may rest and continue with a jump, as a force does where backlash is open: there only noise is decisive.
+    its motion begins, or after it has ended, where few samples in a period make noise look larger than steps. A channel
+    that is not `smooth` may rest and continue with a jump, as a force does where backlash is open: there only noise is
+    decisive.
 
     >>> values = np.random.default_rng(0).normal(size=1000)
     >>> values[500:506] = values[500]

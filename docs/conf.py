@@ -27,6 +27,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
     "sphinx.ext.mathjax",
     "reference_pages",
+    "shared_tree",
 ]
 source_suffix = {".md": "myst-nb", ".rst": "restructuredtext", ".ipynb": "myst-nb"}
 exclude_patterns = ["_build", "_extensions", "gallery", "examples/*.ipynb", "examples/*.py", "examples/*.json"]

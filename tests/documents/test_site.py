@@ -19,17 +19,24 @@ from inerter.files.common.keys import keys_of_files
 
 # "Dodds and Robson 1973", "Smith (2002)", "Saltelli et al. (2010)": the first author, and the year
 SOURCE = re.compile(r"\b([A-ZÅ][^\W\d_]+)(?:(?:, [A-Z]\w+)* and [A-Z]\w+| et al\.)? \(?((?:19|20)\d\d)\b")
+NO_SITE = "the extra `site` is not installed"
 YEAR = re.compile(r"\(((?:19|20)\d\d)\)")
 
 
 @pytest.fixture(scope="module")
-def reference(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+def extensions() -> Iterator[None]:
+    """Extensions of the site can be imported."""
     sys.path.insert(0, str(ROOT / "docs" / "_extensions"))
-    reference_pages = pytest.importorskip("reference_pages", reason="the extra `site` is not installed")
+    yield
+    sys.path.remove(str(ROOT / "docs" / "_extensions"))
+
+
+@pytest.fixture(scope="module")
+def reference(extensions: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    reference_pages = pytest.importorskip("reference_pages", reason=NO_SITE)
     folder = tmp_path_factory.mktemp("reference")
     reference_pages.write_reference(folder)
-    yield folder
-    sys.path.remove(str(ROOT / "docs" / "_extensions"))
+    return folder
 
 
 def test_every_name_has_a_page(reference: Path) -> None:
@@ -105,3 +112,41 @@ def test_every_source_that_pages_name_is_among_the_references() -> None:
     named = set(SOURCE.findall(" ".join(text.split())))
     assert len(named) > 25
     assert sorted(named - entries) == []
+
+
+def a_tree(first: str, group: str, member: str, at: str = "") -> str:
+    """The tree of three pages as Sphinx writes it: links to them, seen from the one at which the reader is."""
+
+    def mark(attribute: str, *pages: str) -> str:
+        return attribute if at in pages else ""
+
+    def link(name: str, target: str) -> str:
+        return f'<a class="{mark("current ", name)}reference internal" href="{target}">{name}</a>'
+
+    inner, outer = mark(' class="current"', "member"), mark(' class="current"', "first", "group", "member")
+    return f"""<p class="caption"><span class="caption-text">Use</span></p>
+<ul{outer}>
+<li class="toctree-l1{mark(" current", "first")}">{link("first", first)}</li>
+<li class="toctree-l1{mark(" current", "group", "member")}">{link("group", group)}<ul{inner}>
+<li class="toctree-l2{mark(" current", "member")}">{link("member", member)}</li>
+</ul>
+</li>
+<li class="toctree-l1"><a class="reference external" href="https://a.b/c">c</a></li>
+</ul>
+"""
+
+
+VIEWS = {
+    "first.html": a_tree("#", "of/group.html", "of/member.html", at="first"),
+    "of/group.html": a_tree("../first.html", "#", "member.html", at="group"),
+    "of/member.html": a_tree("../first.html", "group.html", "#", at="member"),
+    "code/a/b.html": a_tree("../../first.html", "../../of/group.html", "../../of/member.html"),
+}
+
+
+@pytest.mark.usefixtures("extensions")
+@pytest.mark.parametrize("made_for", VIEWS)
+def test_the_tree_beside_a_page_is_that_which_is_made_for_it(made_for: str) -> None:
+    shared_tree = pytest.importorskip("shared_tree", reason=NO_SITE)
+    tree = shared_tree.SharedTree(VIEWS[made_for], made_for)
+    assert {place: tree.beside(place) for place in VIEWS} == VIEWS

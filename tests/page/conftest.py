@@ -13,10 +13,12 @@ from folders import EXAMPLES
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """All that takes a browser is a campaign, unless it is a marathon."""
+    """All that takes a browser is a campaign, unless it is a marathon, and comes first, for it has the longest tests."""
+    here = Path(__file__).parent
     for item in items:
-        if item.path.parent == Path(__file__).parent and item.get_closest_marker("marathon") is None:
+        if item.path.parent == here and item.get_closest_marker("marathon") is None:
             item.add_marker(pytest.mark.campaign)
+    items.sort(key=lambda item: item.path.parent != here)
 
 
 @pytest.fixture(scope="session")

@@ -85,6 +85,23 @@ def test_a_density_that_may_be_either_is_refused(text):
             read(text, unit)
 
 
+@pytest.mark.parametrize(
+    ("text", "unit", "expected"),
+    [
+        ("3 dB", "", "a ratio without a unit: 20 dB is 10 times an amplitude, and 100 times a power"),
+        ("3 dB", "1", "a ratio without a unit"),
+        ("3 Np", "1", "a ratio without a unit"),
+        ("3 octave", "1", "a ratio without a unit"),
+        ("0 dBm", "W", 'a number with a unit of W, such as "120 W"'),
+        ("20 degC", "K", 'a number with a unit of K, such as "120 K"'),
+    ],
+)
+def test_a_unit_of_which_twice_the_number_is_not_twice_the_quantity_is_refused(text, unit, expected):
+    for read in (parse_quantity, lambda text, unit: parse_one_of(text, {unit: ""}, unit)):
+        with pytest.raises(UnitError, match=f"is a logarithmic unit, or one with another zero; expected {expected}"):
+            read(text, unit)
+
+
 @pytest.mark.parametrize("text", ["1 ((m)^9)^9 N", "1 ((km^9)^9)^9/m N"])
 def test_a_power_of_a_power_of_a_bracket_is_no_unit(text):
     with pytest.raises(UnitError, match="unknown unit"):

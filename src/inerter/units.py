@@ -46,6 +46,7 @@ PURE = "1"  # unit of a dimensionless number
 _ROUGHNESS = "m^3/cycle"
 _KAPPA_OVER = {0: 0.5 * 0.1**2, -1: 1.0 / (4.0 * math.pi)}  # Gd(n0) [m^3] and Gd(Omega0) [m^3/rad], by powers of rad
 _FORMS = "a unit of Gd(n0) (m^3) or Gd(Omega0) (m^3/rad) of ISO 8608 or of kappa (m^3/cycle)", "256e-6 m^3"
+_RATIO = "a ratio without a unit: 20 dB is 10 times an amplitude, and 100 times a power"
 _NEVER_MEANT = re.compile(r"\b(?:[kM]?Nm|ct)\b")  # kilometres a kilogram, as of yarn, and a carat to pint
 _LONGEST = 100
 _IMPORTS, _PAUSE = 5, 0.2  # of pint: attempts, and seconds between them
@@ -59,7 +60,8 @@ def parse_quantity(text: str, unit: str) -> float:
 
     Cycles are counted, not turned into 2 pi rad: "m^3/cycle" is its own kind; "Hz" becomes 2 pi rad/s.
 
-    Raises `UnitError` unless `text` is a finite number followed by a unit of the same kind as `unit`.
+    Raises `UnitError` unless `text` is a finite number followed by a unit of the same kind as `unit`. Decibels and
+    degrees Celsius, of which twice the number is not twice the quantity, are refused.
 
     >>> parse_quantity("120 kN/m", "N/m")
     120000.0
@@ -251,6 +253,10 @@ def _convert(text: str, number: str, given: str, unit: str) -> float:
     # Dividing by a whole number is exact to the last digit where multiplying by its inverse is not: 0.3 mm = 0.0003 m.
     try:
         up, down = _factors(given, unit)
+        if math.isnan(up):
+            problem = f"{_describe_unit(given)} is a logarithmic unit, or one with another zero"
+            is_ratio = _have_same_dimension(unit, "")
+            _fail(text, problem, _RATIO if is_ratio else f"a unit of {unit}", "" if is_ratio else f"120 {unit}")
         value = float(number) * up if up >= 1.0 else float(number) / down
     except (OverflowError, ZeroDivisionError):
         value = math.inf
@@ -261,11 +267,15 @@ def _convert(text: str, number: str, given: str, unit: str) -> float:
 
 @cache
 def _factors(given: str, unit: str) -> tuple[float, float]:
+    """Size of one unit in the other, both ways; nan where quantities are not proportional, as those in decibels."""
     if given in FREQUENT and FREQUENT[given][0] == unit:
         return FREQUENT[given][1:]
     registry = _registry()
     one, other = registry.parse_units(given), registry.parse_units(unit)
-    return float(registry.convert(1.0, one, other)), float(registry.convert(1.0, other, one))
+    up, three = (float(registry.convert(number, one, other)) for number in (1.0, 3.0))
+    if not math.isclose(three, 3.0 * up):
+        return math.nan, math.nan
+    return up, float(registry.convert(1.0, other, one))
 
 
 def _have_same_dimension(given: str, unit: str) -> bool:
@@ -299,7 +309,8 @@ def _describe_unit(given: str) -> str:
 
 def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
     like = f', such as "{example}"' if example else ""
-    raise UnitError(f"Got {quote_value(text)}: {problem}; expected a number with {expected}{like}.")
+    wanted = expected if expected == _RATIO else f"a number with {expected}"
+    raise UnitError(f"Got {quote_value(text)}: {problem}; expected {wanted}{like}.")
 
 
 @cache

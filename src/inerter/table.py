@@ -35,15 +35,22 @@ class Quantity:
     bound: float = nan
     scale: Scale | None = None
 
-    def beside(self, value: float) -> Quantity:
+    def beside(self, value: float, sampling: float = nan) -> Quantity:
         """Another value of a sample of which this one is the nominal, with its errors.
 
-        All are off by the same part where random inputs make it, and by as much as the nominal one otherwise.
+        All are off by the same part where random inputs make it, and by as much as the nominal one otherwise. The
+        standard error `sampling` of a mean or quantile, in which that of random inputs is, takes its place; without
+        random inputs it only limits the digits.
         """
         if not value or not self.value or not isfinite(value / self.value):
             return Quantity(value, self.unit)
         part = abs(value / self.value)
-        return Quantity(value, self.unit, self.error * part, self.bound / part)
+        error, bound = self.error * part, self.bound / part
+        if not isfinite(sampling):
+            return Quantity(value, self.unit, error, bound)
+        if error > 0.0:
+            return Quantity(value, self.unit, sampling, bound)
+        return Quantity(value, self.unit, bound=max(sampling / abs(value), 0.0 if isnan(bound) else bound))
 
     def __str__(self) -> str:
         if self.scale is None:

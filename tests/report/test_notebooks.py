@@ -76,6 +76,17 @@ def test_values_with_tolerances_have_the_digits_that_their_errors_allow() -> Non
     assert values == ["3.0", "3.0", "3.1", "3.4"]
 
 
+def test_a_mean_and_a_quantile_of_a_small_sample_have_the_digits_of_their_standard_errors() -> None:
+    """16 evenly spaced values from 1.5 to 3.5: the mean of 2.5 has a standard error of 0.15, a quantile more."""
+    values = np.linspace(1.5, 3.5, 16)
+    known = it.tolerance_analysis(OPTIMUM.design, COMFORT, it.Norm(), spread={"c": 0.1}, samples=16, seed=0)
+    nominal = it.Estimate(2.4813, "m/s^2")
+    scatter = float(values.std(ddof=1))
+    few = replace(known, nominal=nominal, values=values, mean=2.5001, standard_deviation=scatter, worst=3.5004)
+    found = re.findall(r"<td>([\d.]+)[^<]*m/s", few._repr_html_())
+    assert found == ["2.481", "2.5", "3.4", "3.500"]
+
+
 def test_a_network_is_a_drawing() -> None:
     root = ElementTree.fromstring(FREE._repr_svg_())
     assert root.tag.endswith("svg")

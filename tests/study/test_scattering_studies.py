@@ -40,20 +40,28 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> StudyResult:
     return run_study(study_of(folder, ASK + 'tolerance = { c = "10 %", elements.b = 0.05 }\n'), folder / "out")
 
 
+SAMPLING = {"standard_deviation": 0.0021, "quantile": 0.017}  # standard errors
+
+
 @pytest.mark.parametrize(
-    ("error", "bound", "told"),
+    ("error", "bound", "sampling", "told"),
     [
-        (None, 1e-12, ["2.509 m/s^2", "0.04567 m/s^2", "2.588 m/s^2"]),
-        (None, 0.02, ["2.5 m/s^2", "0.046 m/s^2", "2.6 m/s^2"]),
-        (0.0123, 1e-6, ["2.509 +- 0.012 m/s^2", "0.04567 +- 0.00022 m/s^2", "2.588 +- 0.013 m/s^2"]),
-        (0.0, None, ["2.509 m/s^2", "0.04567 m/s^2", "2.588 m/s^2"]),
+        (None, 1e-12, {}, ["2.509 m/s^2", "0.04567 m/s^2", "2.588 m/s^2"]),
+        (None, 0.02, {}, ["2.5 m/s^2", "0.046 m/s^2", "2.6 m/s^2"]),
+        (0.0123, 1e-6, {}, ["2.509 +- 0.012 m/s^2", "0.04567 +- 0.00022 m/s^2", "2.588 +- 0.013 m/s^2"]),
+        (0.0, None, {}, ["2.509 m/s^2", "0.04567 m/s^2", "2.588 m/s^2"]),
+        (None, 1e-12, SAMPLING, ["2.509 m/s^2", "0.046 m/s^2", "2.6 m/s^2"]),
+        (None, None, SAMPLING, ["2.509 m/s^2", "0.046 m/s^2", "2.6 m/s^2"]),
+        (0.0123, 1e-6, SAMPLING, ["2.509 +- 0.012 m/s^2", "0.0457 +- 0.0021 m/s^2", "2.588 +- 0.017 m/s^2"]),
     ],
 )
-def test_values_have_the_digits_that_their_errors_allow(error: float, bound: float, told: list[str]) -> None:
+def test_values_have_the_digits_that_their_errors_allow(
+    error: float, bound: float, sampling: dict[str, float], told: list[str]
+) -> None:
     numbers = {"nominal": 2.5094, "standard_deviation": 0.04567, "quantile": 2.5876}
     answer = ToleranceAnswer(
         layout="S1", index="J1", method="m", unit="m/s^2", numbers=numbers, effects={}, standard_error=error,
-        error_bound=bound, status="ok", message="",
+        error_bound=bound, errors=sampling, status="ok", message="",
     )  # fmt: skip
     assert [str(answer.quantity(name)) for name in numbers] == told
 
@@ -72,6 +80,8 @@ def test_a_tolerance_is_that_of_python(found: StudyResult) -> None:
     )
     assert second.numbers["mean"] == by_hand.mean
     assert second.numbers["quantile"] == by_hand.quantile(0.95)
+    assert second.errors["mean"] == by_hand.standard_errors["mean"]
+    assert second.errors["quantile"] == by_hand.quantile_estimate(0.95).standard_error
     assert second.effects == {name: [by_hand.first_order[name], by_hand.total_order[name]] for name in ("c", "b")}
     assert list(first.effects) == ["c"]
     with (found.folder / "tolerances.csv").open(encoding="utf-8", newline="") as stream:

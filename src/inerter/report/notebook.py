@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from math import isfinite
+from math import isfinite, nan
 
 from inerter.errors import OK, Status
 from inerter.formatting import capital, format_number, format_quantity, format_with_interval
@@ -68,9 +68,11 @@ def break_even_html(found: BreakEven) -> str:
 def tolerance_html(found: Tolerance) -> str:
     """Distribution of an index, and the part of each value in its variance."""
     nominal = _estimate_quantity(found.nominal)
-    numbers = {"mean": found.mean, "95 % quantile": found.quantile(0.95), "worst": found.worst}
+    quantile = found.quantile_estimate(0.95)
     facts: list[Fact] = [("nominal", nominal)]
-    facts += [(name, nominal.beside(value)) for name, value in numbers.items()]
+    facts.append(("mean", nominal.beside(found.mean, found.standard_errors["mean"])))
+    facts.append(("95 % quantile", nominal.beside(quantile.value, quantile.standard_error or nan)))
+    facts.append(("worst", nominal.beside(found.worst)))
     facts += [(f"first order of {name}", format_number(share, 3)) for name, share in found.first_order.items()]
     return _html(_facts("Tolerance analysis", facts), found.status)
 

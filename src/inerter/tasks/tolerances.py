@@ -56,6 +56,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             seed=study.seed,
         )
         numbers = found.nominal.value, found.mean, found.standard_deviation, found.quantile(SHARE), found.worst
+        errors = {**found.standard_errors, "quantile": found.quantile_estimate(SHARE).standard_error or np.nan}
         return ToleranceAnswer(
             layout=self.layout,
             index=self.index,
@@ -66,6 +67,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
             standard_error=found.nominal.standard_error,
             error_bound=number_or_none(found.nominal.error_bound),
             shared_errors=found.nominal.shared_errors,
+            errors={name: error for name, error in errors.items() if np.isfinite(error)},
             **with_decisive_method(found.status, method).to_json(),
         )
 
@@ -96,13 +98,15 @@ class ToleranceAnswer(Answer):
     standard_error: float | None = None  # of the nominal value, by random inputs that all values have in common
     error_bound: float | None = None  # of the nominal value, relative, sampling apart
     shared_errors: dict[str, tuple[float, ...]] = field(default_factory=dict)  # of that, those of the road
+    errors: dict[str, float] = field(default_factory=dict)  # standard errors of the other numbers, by the sample too
 
     def quantity(self, name: str) -> Quantity | None:
-        """A number of the distribution with its unit and the errors of the values; None if it is not known."""
+        """A number of the distribution with its unit and its errors; None if it is not known."""
         if name not in self.numbers:
             return None
         error, bound = (np.nan if known is None else known for known in (self.standard_error, self.error_bound))
-        return Quantity(self.numbers["nominal"], self.unit, error, bound).beside(self.numbers[name])
+        nominal = Quantity(self.numbers["nominal"], self.unit, error, bound)
+        return nominal.beside(self.numbers[name], self.errors.get(name, np.nan))
 
 
 class Tolerances(Task[ToleranceAnswer]):

@@ -174,6 +174,8 @@ def test_values_that_have_no_size_keep_their_unit(values):
         ("1e-05", "10⁻⁵"),
         ("1.2e+10 N", "1.2 × 10¹⁰ N"),
         ("-18.7 %", "−18.7 %"),
+        ("offset -2.9 N (-0.2 to 1 %), bounds [-1, -inf]", "offset −2.9 N (−0.2 to 1 %), bounds [−1, −inf]"),
+        ('state "-3 ms"; k - 2 on 2008-11-30, S1-2', 'state "-3 ms"; k - 2 on 2008-11-30, S1-2'),
         ("(m/s^2)/(m/s)", "(m/s²)/(m/s)"),
         ("20.76 um/N", "20.76 µm/N"),
         ("inf", "inf"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from inerter.units import PURE
@@ -29,6 +29,7 @@ _TENTH = 0.1 * (1.0 + 1e-9)
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _POWER = re.compile(r"\^(-?\d)")
+_MINUS = re.compile(r"(?<![^ (\[])-(?=[\d.]|inf\b)")  # before a number, not within a word or a date
 _MICRO = re.compile(r"(?:(?<=\d )|(?<=in )|(?<=[\[(]))u(?=[ms]\b)")
 _UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
 _LEAST = 1e-12  # of a number that is written without a power of ten, and its inverse
@@ -342,14 +343,28 @@ def label_with_unit(what: str, unit: str) -> str:
 def typeset(text: str) -> str:
     """Printed form of plain units and numbers: superscripts, powers of ten, and proper minus signs; names are kept.
 
+    What stands in quotes is to be typed, and remains as it is.
+
     >>> typeset("5e-07 m^3/cycle"), typeset("um = 3 um in 1e-3"), typeset_unit("um/N")
     ('5 × 10⁻⁷ m³/cycle', 'um = 3 µm in 1e-3', 'µm/N')
+    >>> typeset('-3 dB and between -2 and 1 kN: state "-5 ms"')
+    '−3 dB and between −2 and 1 kN: state "-5 ms"'
     """
+    return outside_quotes(_typeset, text)
+
+
+def outside_quotes(change: Callable[[str], str], text: str) -> str:
+    """Text whose parts outside quotes are changed."""
+    parts = text.split('"')
+    return '"'.join(change(part) if i % 2 == 0 else part for i, part in enumerate(parts))
+
+
+def _typeset(text: str) -> str:
     text = text.replace(" +- ", " ± ")
     text = _EXPONENT.sub(_power_of_ten, text)
     text = _POWER.sub(lambda power: power[1].translate(_SUPERSCRIPT), text)
     text = re.sub(r"^1 × (?=10)", "", text).replace(") 1 × 10", ") × 10")
-    return _MICRO.sub("µ", re.sub(r"^-(?=[\d.i])", "−", text))
+    return _MICRO.sub("µ", _MINUS.sub("−", text))
 
 
 def _power_of_ten(number: re.Match[str]) -> str:

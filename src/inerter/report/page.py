@@ -21,7 +21,7 @@ from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
-from inerter.formatting import capital, join_units, typeset
+from inerter.formatting import capital, join_units, outside_quotes, typeset
 from inerter.report.problem_statement import computation, problem_statement
 from inerter.report.sections import Section, trade_off_section
 from inerter.report.study_contents import StudyContents
@@ -141,13 +141,11 @@ def printed_text(text: str) -> str:
 
     What stands in quotes is to be typed, and remains as it is.
     """
-    parts = text.split('"')
-    return '"'.join(_typeset_plain(part) if i % 2 == 0 else part for i, part in enumerate(parts))
+    return outside_quotes(_typeset_plain, text)
 
 
 def _typeset_plain(text: str) -> str:
     text = text.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}")
-    text = re.sub(r" -(?=[\d.]|inf\b)", " −", text)
     return join_units(typeset(text).replace(" × 10", f"{_SPACE}×{_SPACE}10"))
 
 

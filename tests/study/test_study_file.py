@@ -445,6 +445,11 @@ BAD = {
     "dash in name": ([('b = "300 kg"', 'b-1 = "300 kg"')], "elements.b-1", ["not a name"]),
     "newline in name": ([('b = "300 kg"', '"b\\n" = "300 kg"')], 'elements."b\\n"', ["not a name"]),
     "layout name": ([('S1 = "k | c"', '"../S1" = "k | c"')], 'layouts."../S1"', ["not a layout name"]),
+    "space in layout name": (
+        [('S1 = "k | c"', '"S1 soft" = "k | c"')],
+        'layouts."S1 soft"',
+        ["without spaces, such as S1_soft."],
+    ),
     # layouts
     "undefined": ([('"k | c | b"', '"k | c | cs"')], "layouts.S2", ['"cs"', "not in [elements]", "k, c, b"]),
     "syntax": ([('"k | c | b"', '"k | | b"')], "layouts.S2", ["column 5", "element name or '(' expected"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
@@ -44,7 +45,7 @@ EXPRESSION_SCHEMA: dict[str, Any] = {
     "description": "Network: | in parallel; - in series, binds tighter; bridge(a, b, c, d, e) with networks as arms.",
     "examples": ["k | c - b"],
 }
-_LAYOUT_NAME_CHARACTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+.")
+_LAYOUT_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]{0,39}")
 
 
 class Amount(NamedTuple):
@@ -438,11 +439,13 @@ def element_name(name: Any) -> str:
 
 def layout_name(name: Any) -> str:
     """A name that can stand in a table and in the name of a file."""
-    if not 0 < len(name) <= 40 or not _LAYOUT_NAME_CHARACTERS.issuperset(name) or name[0] in ".-+":
+    if not _LAYOUT_NAME.fullmatch(name):
+        joined = "_".join(name.split())
         raise invalid_entry(
             name,
             fault="not a layout name, which also names files",
-            expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, such as S3e",
+            expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, without spaces, such as "
+            + (joined if _LAYOUT_NAME.fullmatch(joined) else "S3e"),
         )
     return str(name)
 

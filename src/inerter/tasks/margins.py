@@ -11,7 +11,7 @@ from math import isfinite, nan
 
 from inerter.decision.of_study import nonlinear_elements
 from inerter.decision.results import Improvement
-from inerter.errors import StatusKind
+from inerter.errors import MechanismError, StatusKind
 from inerter.files.study.conditions import MOST_LISTED, condition_labels
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.speeds import BESIDE, estimate_at_speed, is_at_one_speed, quick_method
@@ -27,6 +27,7 @@ from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, N
 from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.optimisation.budget import BreakEven, better_clause
 from inerter.statements import Severity
+from inerter.systems.piecewise import piecewise
 from inerter.tasks.budgets import element_break_even, range_text
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.validation import number_or_none
@@ -37,6 +38,10 @@ USUAL: Mapping[type[Element], float] = {Damper: 0.2}  # relative tolerances wher
 _USUAL = 0.1  # of all other kinds
 SHARES = (0.05, 0.5, 0.95)  # of the sample, of the quantiles that are told
 _SAMPLES, _FEW = 1024, 256  # of the sample, by a method with compiled code, and by one that linearises
+_IMPACT = (
+    "{} has no break-even value without an elastic shaft: with inertia on both sides, each closing of the gap "
+    "would be an impact. Put the spring of the shaft in series with the inerter."
+)
 Progress = Callable[[int, int, str], object]
 
 
@@ -168,13 +173,31 @@ def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: Non
     found = []
     for done, trial in enumerate(trials):
         tell(done, len(trials) + 2, trial.words)
-        found.append(_break_even(asked, trial))
+        if _closes_on_inertia(trial):
+            caveats.append(MarginCaveat(_IMPACT.format(capital(trial.words)), Severity.INFO.value))
+        else:
+            found.append(_break_even(asked, trial))
     tell(len(trials), len(trials) + 2, "other speeds")
     speeds = list(_speeds(asked))
     tell(len(trials) + 1, len(trials) + 2, "tolerances")
     scatter, left_out = _scatter(asked)
     caveats += [*_speed_caveats(asked, speeds), *left_out]
     return Margins(asked.layout, asked.index, found, speeds, scatter, caveats)
+
+
+def _closes_on_inertia(trial: _Trial) -> bool:
+    """Whether a gap that the design does not have would have inertia on both sides, so that no motion is defined."""
+    if trial.is_present or not isinstance(trial.element, Gap):
+        return False
+
+    def open_gap(part: Element) -> Element:
+        return part.with_value(1.0) if part.label == trial.parameter else part
+
+    try:
+        piecewise(with_elements(trial.design, open_gap).mechanism())
+    except MechanismError:
+        return True
+    return False
 
 
 def method_that_models(asked: MarginRequest, design: Vehicle, *, gaps: bool) -> str:

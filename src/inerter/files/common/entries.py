@@ -444,8 +444,8 @@ def layout_name(name: Any) -> str:
         raise invalid_entry(
             name,
             fault="not a layout name, which also names files",
-            expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, without spaces, such as "
-            + (joined if _LAYOUT_NAME.fullmatch(joined) else "S3e"),
+            expected="up to 40 letters, digits and _ - + . that begin with a letter or a digit, "
+            f"without spaces, such as {joined if _LAYOUT_NAME.fullmatch(joined) else 'S3e'}",
         )
     return str(name)
 

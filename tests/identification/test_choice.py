@@ -74,7 +74,11 @@ def test_a_damper_is_found_where_there_is_one():
 def test_own_models_and_those_that_fail():
     record = record_of(TRUTHS["ideal"], 0, 1.0)
     models = {"mine": it.Inerter(it.free(1.0, 1e3, name="b")), "known": it.Inerter(113.0)}
-    found = it.select_model(record, models, starts=8)
+    seen: list[it.ProgressStep] = []
+    with it.progress(seen.append):
+        found = it.select_model(record, models, starts=8)
+    under_way = list(dict.fromkeys(step.within for step in seen if step.within and not step.over))
+    assert under_way == [("model mine, 1 of 2",), ("model mine, selected",)]
     assert found.name == "mine"
     assert any(note.startswith("known: cannot be fitted") for note in found.notes)
     assert found.device == it.Inerter(found.fit.parameters["b"].best)

@@ -31,7 +31,7 @@ from inerter.records.record import Record
 from inerter.simulation.event_driven import KERNELS
 from inerter.statements import Severity
 from inerter.vehicle.rig import Rig
-from inerter.work.progress import part
+from inerter.work.progress import part, within
 from inerter.work.running import running_on
 
 Matrix = NDArray[np.float64]
@@ -155,7 +155,8 @@ class _Selection:
         for name, model in candidates.items():
             done = len(self.fits) + len(self.failed)
             try:
-                self._add_solution(name, solution_of(self.records, model, self.asked, self._part_progress(done)))
+                with within(f"model {name}, {done + 1} of {self.expected}"):
+                    self._add_solution(name, solution_of(self.records, model, self.asked, self._part_progress(done)))
             except InerterError as error:
                 self.failed.append(Finding(FitFinding.FAILED, Severity.WARNING, name, {"error": error.args}))
         if not self.fits:
@@ -167,7 +168,8 @@ class _Selection:
         """The selected candidate of all that entered."""
         ranked = ranking(self.fits)
         name = _fewest_unknowns(ranked)
-        fit = self.fits[name] = fit_of(self.solutions[name])
+        with within(f"model {name}, selected"):
+            fit = self.fits[name] = fit_of(self.solutions[name])
         values = {n: p.best for n, p in fit.parameters.items()}
         stuck = (
             Finding(FitFinding.NOT_REACHED, Severity.WARNING, c, {"other": o})
@@ -189,7 +191,7 @@ class _Selection:
     def _retry(self) -> None:
         """Refit candidates that have not converged near the fit of the related candidate that shows it."""
         for name, relative in _not_converged(ranking(self.fits), self.fits):
-            with suppress(InerterError):
+            with suppress(InerterError), within(f"model {name} again"):
                 near = solution_of(
                     self.records, _bounded_near(self.models[name], self.fits[relative]), self.asked, None
                 )

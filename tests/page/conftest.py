@@ -13,7 +13,7 @@ from folders import EXAMPLES
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """All that takes a browser is a campaign, unless it is a marathon, and comes first, for it has the longest tests."""
+    """All that takes a browser is a campaign, unless it is a marathon. It comes first: the longest tests are there."""
     here = Path(__file__).parent
     for item in items:
         if item.path.parent == here and item.get_closest_marker("marathon") is None:

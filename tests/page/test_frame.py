@@ -205,6 +205,12 @@ def test_a_question_opens_by_the_keyboard(nothing: Served, visitors: Callable[..
     assert f'title = "{opened}"' in (EXAMPLES / "quarter-car.toml").read_text()
     visitor.settled()
     assert page.inner_text("footer").startswith("Page")  # the card that had the focus is gone
+    page.locator("#open-menu summary").click()
+    page.get_by_role("button", name="The first screen").click()
+    page.locator(".list-row", has_text=opened).wait_for()  # among those that were open before
+    assert page.locator(".card").count() == len(names)
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_function("text => document.querySelector('input.title')?.value === text", arg=opened)
     page.reload()
     other = visitors(visitor.served, context=page.context).visit().page
     other.locator(".list-row", has_text=opened).click()

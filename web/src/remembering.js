@@ -91,7 +91,7 @@ export function keepRemembering(store) {
   addEventListener("pagehide", () => {
     const { present } = store.get().history;
     sessionStorage.setItem(KEPT, JSON.stringify(present));
-    if (!isBlank(present)) noteOpened(present.study);
+    noteOpened(present);
   });
 }
 
@@ -214,8 +214,10 @@ export function openedBefore() {
   }
 }
 
-/** Notes a study that is left, or edited for a while. @param {any} study */
-function noteOpened(study) {
+/** Notes the study of a document that is left, or edited for a while; none of an empty one.
+ * @param {Document} document */
+export function noteOpened({ study }) {
+  if (isBlank({ study })) return;
   const title = String(study.title ?? "Untitled study");
   const others = openedBefore().filter((each) => each.title !== title);
   const all = [{ title, at: Date.now(), study }, ...others].slice(0, FEW);

@@ -47,7 +47,8 @@ export function MarginsPanel({ store, api }) {
       onSubmit=${formHandler(() => void compute(store, api))}>
       <button class="edged" disabled=${is === "coming"}>Compute break-even values</button>
       <p role="status">${is !== "coming" && (sentence || (!value && `Friction, backlash and stiffness at which ${layout}
-        equals ${baselineOf(state.history.present).layout}; simulation takes about a minute.`))}</p></form>
+        equals ${baselineOf(state.history.present).layout}; simulation takes a minute, or several with operating
+        conditions.`))}</p></form>
     ${is === "coming" && job && html`<${JobHead} store=${store} api=${api} job=${job} /><p class="quiet">
       ${job.sentence}</p>`}
     ${value && html`<${Margins} value=${value} />`}

@@ -6,7 +6,7 @@ import { ExportMenu } from "./exports.js";
 import { bodyOf, comparedOf, designOf, shownDesigns } from "../questions.js";
 import { DropDown, Select, useChoice } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { download, fileName, linkTo, open } from "../remembering.js";
+import { download, fileName, linkTo, noteOpened, open } from "../remembering.js";
 import { begin, ended, openStudy } from "../working.js";
 import { isBlank } from "../state/document.js";
 
@@ -111,8 +111,14 @@ function Open({ store, api }) {
     close(event);
     void openStudy(store, api, study);
   };
+  /** @param {Event} event */
+  const leave = (event) => {
+    noteOpened(store.get().history.present);
+    openExample(event, {});
+  };
   return html`<${DropDown} title="Open" id="open-menu" onOpen=${look}>
     <label class="file">A study file or record… <input type="file" multiple onChange=${openFiles} /></label>
+    ${!isBlank(store.get().history.present) && html`<button type="button" onClick=${leave}>The first screen</button>`}
     ${examples.length > 0 && html`<b class="legend">Examples</b>`}
     ${examples.map(({ name, title, study }) => html`<button type="button" key=${name}
       onClick=${(/** @type {Event} */ event) => openExample(event, study)}>${title}</button>`)}

@@ -1,9 +1,16 @@
-"""Squared H2 norm of b(s)/a(s), its adjoint and its rounding error, compiled (Astrom, Jury and Agniel, 1970).
+"""Squared H2 norm of a transfer function b(s)/a(s), its gradient and its rounding error, compiled.
 
-The recursion divides a(s) by its own odd and even part; all quotients alpha are positive if and only if a is stable.
-Coefficients run from the highest power downwards, a[0] s^n + ... + a[n] and b[0] s^(n-1) + ... + b[n-1]. The reverse
-pass gives the derivative of the result with respect to every coefficient of every step, and so also how far the
-roundings of each step may move it, at first order.
+The algorithm is that of Astrom, Jury and Agniel (1970): with the Routh array of a(s), the squared norm is a sum of n
+terms beta_j^2 / (2 alpha_j), and no equation is solved. Coefficients are in descending powers as those of
+`numpy.polyval`: a[0] s^n + ... + a[n], and b[0] s^(n-1) + ... + b[n-1], so that b/a is strictly proper.
+
+Step j eliminates the leading coefficient: alpha_j = a[j] / a[j+1] and beta_j = b[j] / a[j+1], and every second of the
+remaining coefficients of a and b is reduced by that multiple of its right neighbour in a. By the criterion of Routh,
+a(s) is stable if and only if all alpha_j are positive.
+
+`forward` computes the norm and keeps each step; `backward` differentiates it with respect to all coefficients (reverse
+mode), and bounds its rounding error to first order: the sum over all operations of the derivative of the result with
+respect to the rounded number, times its rounding.
 """
 
 from __future__ import annotations
@@ -16,30 +23,36 @@ from inerter.kernels.double_double import add_product
 from inerter.kernels.lanes import is_between
 
 Array = Any
-_EPS = 1.2e-16  # relative error of one operation
-_FINE_EPS = 1e-30  # the same in twice the precision, with room to spare
-_FIRST_ORDER = 0.1  # relative error of a quotient alpha up to which that of the result is one of first order
+_EPS = 1.2e-16  # relative rounding error of an operation in double precision
+_FINE_EPS = 1e-30  # bound of that in double-double arithmetic
+_FIRST_ORDER = 0.1  # largest relative error of an alpha_j for which the bound of the result is trusted
 
 
 class Recursion(NamedTuple):
-    """Coefficients of a fraction, the steps of its recursion, and adjoints."""
+    """Coefficients of b(s)/a(s) of degree n, and work space of its recursion.
 
-    a: Floats  # overwritten
-    b: Floats
-    a_low: Floats
+    The first n + 1 entries of each vector are used. Before `fine_forward` the coefficients are a + a_low and b + b_low.
+    """
+
+    a: Floats  # denominator, overwritten by the recursion
+    b: Floats  # numerator, overwritten
+    a_low: Floats  # low parts of double-double coefficients
     b_low: Floats
-    steps: Matrix  # (degree, degree + 1): a before each step
-    before: Matrix  # the same of b
-    alpha: Floats
-    beta: Floats
-    a_adjoint: Floats
+    steps: Matrix  # (n, n + 1): a before each step
+    before: Matrix  # (n, n + 1): b before each step
+    alpha: Floats  # (n)
+    beta: Floats  # (n)
+    a_adjoint: Floats  # derivatives of the squared norm with respect to the coefficients, filled by `backward`
     b_adjoint: Floats
-    a_error: Floats  # bounds of the error of a, overwritten
+    a_error: Floats  # absolute error bounds of a: of the coefficients as given, then of those after each step
 
 
 @part(borrowing=True)
 def _spread_errors(j: int, n: int, alpha: Any, space: Recursion, eps: float) -> Any:
-    """Bounds of the error of a after step j, whose a is still there; 1 if that of alpha is small, else 0."""
+    """Update the error bounds of a for step j, called before a itself is; 1.0 if alpha is accurate enough, else 0.0.
+
+    Accurate enough means that the first-order bound of `backward` holds (`_FIRST_ORDER`).
+    """
     a, errors = space.a, space.a_error
     relative = (errors[j] + alpha * errors[j + 1]) / a[j] + eps
     for i in range(j + 2, n, 2):
@@ -50,7 +63,7 @@ def _spread_errors(j: int, n: int, alpha: Any, space: Recursion, eps: float) -> 
 
 @part(borrowing=True)
 def forward(n: int, space: Recursion) -> Any:
-    """Squared norm; infinite or nan where a is not stable, which rounding may have made it seem, or may hide."""
+    """Squared H2 norm in double precision; inf or nan where a(s) is not stable, or where rounding leaves that open."""
     a, b, steps, before = space.a, space.b, space.steps, space.before
     total, stable = 0.0, 1.0
     for j in range(n):
@@ -70,7 +83,7 @@ def forward(n: int, space: Recursion) -> Any:
 
 @part(borrowing=True)
 def fine_forward(n: int, space: Recursion) -> Any:
-    """Squared norm in twice the precision; see `forward`."""
+    """Squared H2 norm in double-double arithmetic, some 32 digits; inf or nan as `forward`."""
     a, b, a_low, b_low, steps, before = space.a, space.b, space.a_low, space.b_low, space.steps, space.before
     total, rest, stable = 0.0, 0.0, 1.0
     for j in range(n):
@@ -101,7 +114,7 @@ def fine_forward(n: int, space: Recursion) -> Any:
 
 @part(borrowing=True)
 def _divide(p: Any, p_low: Any, q: Any, q_low: Any) -> Any:
-    """(p + p_low) / (q + q_low) as two numbers."""
+    """High and low part of the quotient (p + p_low) / (q + q_low) of double-double numbers."""
     high = p / q
     rest, low = add_product(p, p_low, -high, q)
     more = (rest + (low - high * q_low)) / q
@@ -111,7 +124,11 @@ def _divide(p: Any, p_low: Any, q: Any, q_low: Any) -> Any:
 
 @part(borrowing=True)
 def backward(n: int, space: Recursion, fine: bool) -> Any:
-    """Fill the adjoints of a and b, and give the rounding error of the squared norm by the recursion itself."""
+    """Fill `a_adjoint` and `b_adjoint` with the gradient of the squared norm; returns a bound of its rounding error.
+
+    The bound is absolute and counts the roundings of the recursion; those of the coefficients as given are their errors
+    times the gradient. Call after `forward`, or with `fine` after `fine_forward`.
+    """
     a_, b_, steps, before = space.a_adjoint, space.b_adjoint, space.steps, space.before
     eps = _FINE_EPS if fine else _EPS
     for i in range(n + 1):

@@ -418,3 +418,40 @@ def test_excitations_and_indices_of_the_previous_version_are_read():
         assert definition.drive.size == definition.drive.amplitude_density
     with pytest.warns(DeprecationWarning, match="`arrivals` is now `input_paths`"):
         assert definition.arrivals(car.mechanism()) == definition.input_paths(car.mechanism())
+
+
+class CountedPush:
+    """A white force that counts how often a mechanism is excited by it."""
+
+    amplitude_density, unit, is_random = 2.0, "N", True
+
+    def __init__(self):
+        self.count = 0
+
+    def excited_mechanism(self, mechanism):
+        self.count += 1
+        return mechanism
+
+    def input_paths(self, mechanism):
+        return (it.InputPath("sprung_force", "push"),)
+
+
+def test_an_excitation_is_read_once_for_an_evaluation_and_anew_for_the_next():
+    push = CountedPush()
+    car = it.QuarterCar(250.0, 30.0, 2e5, Spring(2e4) | Damper(2e3))
+    index = it.RideComfort(push)
+    first = it.evaluate(car, index, it.Norm())
+    assert push.count == 1
+    push.amplitude_density = 4.0
+    assert it.evaluate(car, index, it.Norm()).value == 2.0 * first.value
+    assert push.count == 2
+
+
+def test_a_method_that_inherits_from_another_is_asked_itself():
+    class Doubled(it.Norm):
+        def estimate(self, vehicle, index):
+            found = super().estimate(vehicle, index)
+            return replace(found, value=2.0 * found.value)
+
+    car = it.QuarterCar(250.0, 30.0, 2e5, Spring(2e4) | Damper(2e3))
+    assert it.evaluate(car, J1, Doubled()).value == 2.0 * it.evaluate(car, J1, it.Norm()).value

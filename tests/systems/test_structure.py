@@ -69,7 +69,7 @@ def test_designs_share_one_problem_and_have_the_values_of_their_own(index):
     for front, rear in (struts[:2], struts[2:]):
         car = it.FullCar(*body, front=front, rear=rear).mechanism()
         definition = index.definition(car)
-        problem, values = linear_problem_of_design(car, definition, CONVENTIONS["exact"])
+        problem, values = linear_problem_of_design(definition.excite(car), CONVENTIONS["exact"])
         found.append(problem.descriptor)
         ours = problem.estimate(values)
         theirs = linear_problem(car, definition, CONVENTIONS["exact"]).estimate({})

@@ -136,6 +136,21 @@ class IndexDefinition:
         """Input paths of the excitation in the order of their delays; `mechanism` is the excited one."""
         return tuple(sorted(self.drive.input_paths(mechanism), key=lambda path: path.delay))
 
+    def excite(self, mechanism: Mechanism) -> ExcitedIndex:
+        """The definition with `mechanism` as excited, and the input paths there."""
+        excited = self.drive.excited_mechanism(mechanism)
+        return ExcitedIndex(self, mechanism, excited, self.input_paths(excited))
+
+
+@dataclass(frozen=True, eq=False)
+class ExcitedIndex:
+    """An index definition for a mechanism, that mechanism as excited, and the input paths of the excitation."""
+
+    definition: IndexDefinition
+    mechanism: Mechanism
+    excited: Mechanism
+    paths: tuple[InputPath, ...]
+
 
 def _factor(weight: float, unit: str, of: str) -> str:
     """The weight of an output in the unit `of`, in an index in `unit`; empty for one."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from types import MappingProxyType
@@ -20,18 +20,26 @@ Effects = Mapping[str, Sequence[float]]  # effects of errors of a road on a valu
 STAND_INS = 0.1  # relative error of a value that is ok by what stands in for its excitation, such as a line for a road
 
 
-def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: float) -> Estimate:
+def with_error_sources(estimate: Estimate, own: Sequence[ErrorSource], promise: float) -> Estimate:
     """Estimate with a method's `own` error sources before those of approximated excitations, which it already has.
+
+    Status and sources are those of `judge_errors`.
+    """
+    status, sources = judge_errors(estimate.value, estimate.status, own, estimate.error_sources, promise)
+    return replace(estimate, status=status, error_sources=sources)
+
+
+def judge_errors(
+    value: float, status: Status, own: Sequence[ErrorSource], stand_ins: Sequence[ErrorSource], promise: float
+) -> tuple[Status, tuple[ErrorSource, ...]]:
+    """Status of a value, and its error sources: a method's `own`, then those of approximated excitations.
 
     Inaccurate where its own exceed `promise`, or the others `STAND_INS`. A value that is infinite is so exactly, and
     one that is not known has no error.
     """
-    if not math.isfinite(estimate.value):
-        exact = (ErrorSource(ROUNDING, 0.0),)
-        return replace(estimate, error_sources=exact if math.isinf(estimate.value) else ())
-    sources = tuple(own)
-    status = estimate.status
-    for several, most in ((sources, promise), (estimate.error_sources, STAND_INS)):
+    if not math.isfinite(value):
+        return status, (ErrorSource(ROUNDING, 0.0),) if math.isinf(value) else ()
+    for several, most in ((own, promise), (stand_ins, STAND_INS)):
         bound = sum([source.bound for source in several])
         if status.ok and not bound <= most:
             largest = max(several, key=lambda source: source.bound)
@@ -41,7 +49,7 @@ def with_error_sources(estimate: Estimate, own: Iterable[ErrorSource], promise: 
                 unknown = ", ".join(source.name for source in several if math.isnan(source.bound))
                 message = f"unknown error from {unknown}"
             status = Status(StatusKind.INACCURATE, message)
-    return replace(estimate, status=status, error_sources=(*sources, *estimate.error_sources))
+    return status, (*own, *stand_ins)
 
 
 def of_weighted_sum(

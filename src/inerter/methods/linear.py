@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import ErrorSource, PerformanceIndexError, worst_of
-from inerter.indices.definition import IndexDefinition
+from inerter.errors import ErrorSource, PerformanceIndexError, Status, worst_of
+from inerter.indices.definition import ExcitedIndex, IndexDefinition
 from inerter.indices.excitation import error_sources_of
-from inerter.methods.error_bounds import ROUNDING, with_error_sources
+from inerter.methods.error_bounds import ROUNDING, judge_errors
 from inerter.methods.measured_road_errors import road_errors
 from inerter.methods.method import Estimate
 from inerter.methods.symmetric_half import on_one_side
@@ -168,7 +168,7 @@ class LinearProblem:
         """The system for these free values; others that have no effect here may be among them."""
         d = self.descriptor
         known = {name: value for name, value in values.items() if name in d.free}
-        return close(d, known, self.sources, self.delays)
+        return close(d, known, self.sources, [delay for *_, delay in self.arrivals])
 
     def estimate(self, values: Mapping[str, float]) -> Estimate:
         """The value of the index for these free values."""
@@ -178,9 +178,8 @@ class LinearProblem:
         norms, unsure = self.norms(system, values)
         outputs = norms.outputs
         value = float(self.definition.combine(outputs, self.weights))
-        found = Estimate(value, self.definition.unit, norms.status, notes=system.notes)
         more = road_errors(self.definition, system, self.pade_order, outputs)
-        return self._with_errors(found, norms.error, more, unsure)
+        return self._estimate(value, norms.status, system.notes, (norms.error, unsure), more)
 
     def norms(self, system: LinearSystem, values: Mapping[str, float]) -> tuple[H2, float]:
         """Norms of the outputs for the true densities of the sources, and the largest relative error from these.
@@ -218,20 +217,25 @@ class LinearProblem:
         gain = hinf_norm(system)
         weight = float(self.weights[0])
         peaks = tuple(GainPeak(peak.omega, weight * peak.gain) for peak in gain.peaks)
-        found = Estimate(weight * gain.value, self.definition.unit, gain.status, peaks=peaks, notes=system.notes)
-        return self._with_errors(found, gain.error)
+        return self._estimate(weight * gain.value, gain.status, system.notes, (gain.error, 0.0), peaks=peaks)
 
-    def _with_errors(
-        self, found: Estimate, rounding: float, more: tuple[ErrorSource, ...] = (), integral: float = 0.0
+    def _estimate(
+        self,
+        value: float,
+        status: Status,
+        notes: tuple[str, ...],
+        errors: tuple[float, float],
+        more: tuple[ErrorSource, ...] = (),
+        peaks: tuple[GainPeak, ...] = (),
     ) -> Estimate:
-        """Estimate with the errors from rounding and from approximated excitations."""
-        stand_ins = error_sources_of(self.definition.drive, self.mechanism)
-        own: tuple[ErrorSource, ...] = (ErrorSource(ROUNDING, rounding + _FEW),)
+        """Estimate with the errors from rounding and from densities, `errors`, and from approximated excitations."""
+        own: tuple[ErrorSource, ...] = (ErrorSource(ROUNDING, errors[0] + _FEW),)
         if self.excesses:
-            own = (*own, ErrorSource(DENSITY, integral))
+            own = (*own, ErrorSource(DENSITY, errors[1]))
+        stand_ins = (*error_sources_of(self.definition.drive, self.mechanism), *more)
         promise = CORRECTED if self.excesses else PROMISE
-        known = replace(found, error_sources=(*stand_ins, *more)) if stand_ins or more else found
-        return with_error_sources(known, own, promise)
+        status, sources = judge_errors(value, status, own, stand_ins, promise)
+        return Estimate(value, self.definition.unit, status, peaks=peaks, notes=notes, error_sources=sources)
 
 
 def linear_problem(mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions) -> LinearProblem:
@@ -239,11 +243,11 @@ def linear_problem(mechanism: Mechanism, definition: IndexDefinition, convention
 
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
-    return _linear_problem(mechanism, definition, conventions, lambda *asked: (describe(*asked), {}))[0]
+    return _linear_problem(definition.excite(mechanism), conventions, lambda *asked: (describe(*asked), {}))[0]
 
 
 def linear_problem_of_design(
-    mechanism: Mechanism, definition: IndexDefinition, conventions: Conventions
+    index: ExcitedIndex, conventions: Conventions
 ) -> tuple[LinearProblem, Mapping[str, float]]:
     """Linear problem of all designs of the structure of a design without free values, and its values there.
 
@@ -251,24 +255,21 @@ def linear_problem_of_design(
 
     Raises `PerformanceIndexError` as `linear_problem`.
     """
-    return _linear_problem(mechanism, definition, conventions, describe_design)
+    return _linear_problem(index, conventions, describe_design)
 
 
 def _linear_problem(
-    mechanism: Mechanism,
-    definition: IndexDefinition,
+    index: ExcitedIndex,
     conventions: Conventions,
     describe_mechanism: Callable[..., tuple[Descriptor, Mapping[str, float]]],
 ) -> tuple[LinearProblem, Mapping[str, float]]:
-    check_peak_gain(definition)
-    asked = with_convention_filters(conventions, mechanism, definition)
-    driven = definition.drive.excited_mechanism(mechanism)
-    paths = definition.input_paths(driven)
-    excesses = excesses_of(paths)
-    outputs = [output.output for output in definition.outputs]
-    descriptor, values = describe_mechanism(driven, inputs_of(paths), outputs)
-    columns, excited = tuple(columns_of(paths)), apply_excitation(descriptor, paths)
-    return LinearProblem(asked, excited, columns, conventions.pade_order, paths, driven, excesses), values
+    check_peak_gain(index.definition)
+    asked, paths = with_convention_filters(conventions, index.mechanism, index.definition), index.paths
+    outputs = [output.output for output in asked.outputs]
+    descriptor, values = describe_mechanism(index.excited, inputs_of(paths), outputs)
+    columns, driven = tuple(columns_of(paths)), apply_excitation(descriptor, paths)
+    problem = LinearProblem(asked, driven, columns, conventions.pade_order, paths, index.excited, excesses_of(paths))
+    return problem, values
 
 
 def check_peak_gain(definition: IndexDefinition) -> None:

@@ -7,8 +7,9 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from enum import Enum, auto
 from functools import partial
+from itertools import repeat
 from math import nan
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, cast, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.deprecation import RenamedAttribute, adopt_renamed
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
 from inerter.formatting import format_quantity_in_table, typeset
-from inerter.indices.definition import Index, IndexDefinition
+from inerter.indices.definition import ExcitedIndex, Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import (
     IndexLike,
@@ -32,7 +33,7 @@ from inerter.notebook import shown_by
 from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
-from inerter.vehicle.mechanism import Mechanism, check_known
+from inerter.vehicle.mechanism import check_known
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 from inerter.work.pool import Pool
 from inerter.work.running import map_items, running_on
@@ -222,12 +223,15 @@ def evaluate(vehicle: Vehicle, index: IndexLike, method: Method, *, executor: Ex
     >>> round(it.evaluate(car, it.RideComfort(it.Road(roughness=5e-7, speed=25)), it.Norm()).value, 4)
     2.9882
     """
-    check_request(vehicle, index, method)
+    several = check_request(vehicle, index, method)
     check_fixed(vehicle)
     with running_on(executor) as pool:
         if executor is not None:
             _prepare(pool, vehicle, [index], method)
-        return estimate_of(vehicle, index, method)
+        of_excited = getattr(getattr(type(method), "estimate", None), "of_excited", None)
+        if of_excited is None or is_composite(index):
+            return estimate_of(vehicle, index, method)
+        return cast(Estimate, of_excited(method, several[0]))  # whose definition is not read again
 
 
 def evaluate_many(
@@ -285,10 +289,11 @@ def constituents_of(vehicle: Vehicle, index: IndexLike) -> Sequence[tuple[Vehicl
     return index.constituents(vehicle) if is_composite(index) else [(vehicle, index)]
 
 
-def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
-    """Raises `DesignError` or `PerformanceIndexError` for an argument of the wrong kind.
+def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> list[ExcitedIndex]:
+    """Constituent indices, each for the mechanism of its vehicle.
 
-    So it does for an index that names an input or output which the vehicle does not have.
+    Raises `DesignError` or `PerformanceIndexError` for an argument of the wrong kind, and for an index that names an
+    input or output which the vehicle does not have.
     """
     check_vehicle(vehicle)
     if not is_index(index):
@@ -296,30 +301,33 @@ def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> None:
     if not _is_method(method):
         raise PerformanceIndexError(f"Expected a method such as Norm(), got {method!r}.")
     loose = without_tied_values(vehicle)
+    found: list[ExcitedIndex] = []
     for asked, one in constituents_of(vehicle if loose is None else loose.vehicle, index):
         mechanism = asked.mechanism()
-        _check_names(mechanism, one.definition(mechanism))
+        found.append(one.definition(mechanism).excite(mechanism))
+        _check_names(found[-1])
+    return found
 
 
 def _is_method(given: object) -> bool:
     if isinstance(given, type):
         return False
-    if all(hasattr(type(given), name) for name in _METHOD_NAMES):  # which is found sooner than by the protocol
+    if all(map(hasattr, repeat(type(given)), _METHOD_NAMES)):  # which is found sooner than by the protocol
         return True
     if not isinstance(given, Method):  # perhaps written for the previous version
         adopt_renamed(given, sees="nonlinearity_support", words="description", searches="supports_optimisation")
     return isinstance(given, Method)
 
 
-def _check_names(mechanism: Mechanism, definition: IndexDefinition) -> None:
-    driven = definition.drive.excited_mechanism(mechanism)
-    check_inputs(driven, inputs_of(definition.input_paths(driven)), PerformanceIndexError)
+def _check_names(index: ExcitedIndex) -> None:
+    driven = index.excited
+    check_inputs(driven, inputs_of(index.paths), PerformanceIndexError)
     usual = main_outputs(driven)
-    unusual = [weighted.output for weighted in definition.outputs if weighted.output not in usual]
+    unusual = [weighted.output for weighted in index.definition.outputs if weighted.output not in usual]
     if unusual:  # finding all names takes longer than most norms
         known = outputs(driven, full_graph(driven))
         for name in unusual:
-            check_bounded(mechanism, driven, name)
+            check_bounded(index.mechanism, driven, name)
             find(known, name, PerformanceIndexError)
 
 

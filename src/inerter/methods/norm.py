@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError
-from inerter.indices.definition import Index, IndexDefinition
+from inerter.indices.definition import ExcitedIndex, Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem, linear_problem_of_design
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
@@ -53,9 +53,14 @@ class Norm(FormerMethodNames):
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""
         mechanism = vehicle.mechanism()
-        definition, conventions = index.definition(mechanism), CONVENTIONS[self.conventions]
-        problem, values = linear_problem_of_design(mechanism, definition, conventions)
+        return self.estimate_excited(index.definition(mechanism).excite(mechanism))
+
+    def estimate_excited(self, index: ExcitedIndex) -> Estimate:
+        """The value of an index for a mechanism without free values."""
+        problem, values = linear_problem_of_design(index, CONVENTIONS[self.conventions])
         return problem.estimate(values)
+
+    estimate.of_excited = estimate_excited  # type: ignore[attr-defined]  # in whose place `evaluate` calls it
 
     def estimate_many(self, vehicle: Vehicle, indices: Sequence[Index], points: Mapping[str, Array]) -> Array:
         """The indices (designs, indices) at many values of the free values, compiled."""

@@ -20,7 +20,7 @@ from inerter.deprecation import adopt_renamed
 from inerter.indices.definition import DescribedIndex, Index
 from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.networks.elements import Element, Free, Tied, middle
-from inerter.vehicle.replace_values import mounted_elements, with_elements
+from inerter.vehicle.replace_values import with_elements
 from inerter.vehicle.vehicle import Vehicle
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def without_tied_values(vehicle: Vehicle) -> UntiedDesign | None:
 
     Their bounds are half and twice the value that they have in the middle of the bounds of the design variables.
     """
-    if not any(isinstance(element.value, Tied) for part in mounted_elements(vehicle) for element in part):
+    if not any(isinstance(value, Tied) for value in vehicle.mechanism().open_values):
         return None
     free = vehicle.free_values()
     found: dict[str, Tied] = {}

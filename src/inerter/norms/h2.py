@@ -82,7 +82,7 @@ def h2(system: LinearSystem, pade_order: int | None = None) -> H2:
     fine = system.fine
     if fine is None:
         return _of_matrices(system, pade_order)
-    if not (system.D.any() or fine.errors[system.order :, system.order :].any()):
+    if not np.count_nonzero(system.D) and not np.count_nonzero(fine.errors[system.order :, system.order :]):
         found = _squares(system, fine, pade_order)
         if found is not None:
             return H2(np.sqrt(found[0]), OK, 0.5 * found[1])
@@ -168,7 +168,7 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
     size_A = np.abs(A)
     drifting = _drifting(EA + size_A)
     drift = None
-    if drifting.any():
+    if np.count_nonzero(drifting):
         covariance = drift_covariance(fine_B[drifting], system.delays, system.sources)
         if covariance is None:
             return None
@@ -181,7 +181,7 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
         seen = weights.dot(size)
         squares = (fine_C.dot(P) * fine_C).sum(axis=1)
         goals = np.where((seen * weights).sum(axis=1) > 0.0, squares, np.inf).astype(float)
-        if not goals.min(initial=np.inf) > 0.0:
+        if not all(goal > 0.0 for goal in goals.tolist()):
             return None
         Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
     except np.linalg.LinAlgError:
@@ -232,7 +232,8 @@ def _covariance(A: Matrix, fine: tuple[Matrix, Matrix], drift: _Drift | None) ->
         residual[w] = 8.0 * _EPS * covariance
     enters = noise.diagonal()
     terms = 2.0 * (np.abs(A) * np.abs(P)).sum(axis=1) + enters
-    return solver, P, residual, not ((enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)).any()
+    unbalanced = (enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)
+    return solver, P, residual, not np.count_nonzero(unbalanced)
 
 
 def _adjoint(solver: _Solver, A: Matrix, row: Matrix, drift: _Drift | None) -> Matrix:
@@ -367,7 +368,7 @@ def _refine(solver: _Solver, A: Matrix, W: Matrix) -> tuple[Matrix, Matrix]:
         step = solver.solve(residual)
         change = math.sqrt(np.vdot(step, step))
         steps, variances = np.abs(step.diagonal()), P.diagonal()
-        if turn == 0 and (steps > _DAMPED * variances).any():
+        if turn == 0 and np.count_nonzero(steps > _DAMPED * variances):
             raise np.linalg.LinAlgError("damping lost to rounding")
         if not change < 0.5 * before:
             break

@@ -156,7 +156,7 @@ def close(
     descriptor: Descriptor,
     values: Mapping[str, float],
     sources: tuple[str, ...] = (),
-    delays: Matrix | None = None,
+    delays: Sequence[float] = (),
 ) -> LinearSystem:
     """The linear system at numbers for the free values, with the sources and delays of its inputs.
 
@@ -180,9 +180,8 @@ def close(
     through[np.abs(through) <= error[:, n:]] = 0.0  # white noise that reaches an output by rounding would be infinite
     fine = ExtendedMatrices(whole, error, n)
     rounded = fine.rounded
-    late = () if delays is None else tuple(delays.tolist())
     origin = Origin(partial(exact_functions, d, dict(values)), rounded, fine, d.inputs, d.outputs)
-    return _named_system(d, sources, late).with_matrices(rounded, origin)
+    return _named_system(d, sources, tuple(delays)).with_matrices(rounded, origin)
 
 
 @lru_cache(maxsize=64)
@@ -281,7 +280,7 @@ def describe_design(
     Raises as `describe`.
     """
     structure = structure_of(mechanism)
-    if structure is None or len(structure.values) > _MOST_VALUES or any(isinstance(v, Free) for v in structure.values):
+    if structure is None or len(structure.values) > _MOST_VALUES or mechanism.free_values():
         return describe(mechanism, inputs, outputs), {}
     try:
         found = _describe_structure(structure, tuple(inputs), tuple(outputs)).descriptor

@@ -134,7 +134,7 @@ def _motions(mechanism: Mechanism, coordinate: Coordinate | TrackedPoint) -> tup
     else:
         has_mass = not any(c.is_massless and coordinate.port.get(c.name) for c in mechanism.coordinates)
     over_ground = () if mechanism.ground_moves and not coordinate.angle else _OVER_GROUND
-    return (*over_ground, *(what for what in _MOTIONS if what not in _OVER_GROUND and has_mass))
+    return (*over_ground, "acceleration") if has_mass else over_ground
 
 
 def _of_coordinates(mechanism: Mechanism, graph: Graph) -> list[Output]:

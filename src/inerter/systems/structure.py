@@ -78,7 +78,7 @@ def structure_of(mechanism: Mechanism) -> Structure | None:
     coordinates = tuple([(c.name, c.angle, c.is_massless, _free_name(c.inertia)) for c in mechanism.coordinates])
     ground = tuple([c.inertia for c in mechanism.coordinates]) if mechanism.ground_moves else None
     if ground is None:  # else masses are lever arms of the force of the ground
-        values += [c.inertia for c in mechanism.masses.values()]
+        values += [c.inertia for c in mechanism.coordinates if not c.is_massless]
     forces = tuple([(force.name, _port(force.port)) for force in mechanism.forces])
     points = tuple([(point.name, _port(point.port), point.angle) for point in mechanism.points])
     key = (struts, tyres, still, coordinates, ground, mechanism.roads, forces, points)

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import chain
 
 from inerter.deprecation import RenamedAttribute, renamed_keywords
 from inerter.errors import DesignError, MechanismError
@@ -241,6 +243,9 @@ class Mechanism:
         _check_numbers(self)
         _check_ports(self)
         _check_attached(self)
+        if not self.open_values:
+            return
+        del self.__dict__["open_values"]  # since what has no name gets one
         masses = {c.name: c.element for c in self.coordinates if isinstance(c.inertia, Free)}
         named = name_free_values({**{mount.name: mount.network for mount in self.mounts()}, **masses})
         if masses:
@@ -271,6 +276,8 @@ class Mechanism:
 
         This removes inputs, and states for the twist of the road between axles.
         """
+        if len(self.roads) < 2:
+            return self
         held = {name for strut in self.struts for name in (*strut.upper, *strut.lower)}
         first: dict[float, str] = {}
         on = {r.name: r.name if r.name in held else first.setdefault(r.distance, r.name) for r in self.roads}
@@ -292,8 +299,7 @@ class Mechanism:
 
     def mounts(self) -> Iterator[Strut | Tyre]:
         """The struts, then the tyres."""
-        yield from self.struts
-        yield from self.tyres
+        return chain(self.struts, self.tyres)
 
     def elements(self) -> Iterator[Element]:
         """The elements of the struts, then of the tyres."""
@@ -303,11 +309,16 @@ class Mechanism:
         """The elements of the struts."""
         return [element for strut in self.struts for element in strut.network.elements()]
 
-    def free_values(self) -> dict[str, Free]:
-        """Free values by name: those of networks in order of appearance, then masses."""
+    @cached_property
+    def open_values(self) -> list[Free | Tied]:
+        """Values that are no numbers: those of networks in order of appearance, then masses."""
         values = [element.value for mount in self.mounts() for element in mount.network.elements()]
         values += [coordinate.inertia for coordinate in self.coordinates]
-        return {str(value.name): value for value in values if isinstance(value, Free)}
+        return [value for value in values if isinstance(value, Free | Tied)]
+
+    def free_values(self) -> dict[str, Free]:
+        """Free values by name: those of networks in order of appearance, then masses."""
+        return {str(value.name): value for value in self.open_values if isinstance(value, Free)}
 
     def units(self) -> dict[str, str]:
         """The unit of each free value."""
@@ -365,11 +376,11 @@ def check_known(values: object, free_values: Mapping[str, Free]) -> None:
 
 
 def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
-    parts = tuple(given) if isinstance(given, Iterable) and not isinstance(given, str) else (given,)
-    for part in parts:
-        if not isinstance(part, kind) or parts == (given,):
-            raise MechanismError(f"The {name} of a mechanism must be a tuple of {kind.__name__}(...), got {given!r}.")
-    return parts
+    if isinstance(given, Iterable) and not isinstance(given, str):
+        parts = tuple(given)
+        if all(isinstance(part, kind) for part in parts):
+            return parts
+    raise MechanismError(f"The {name} of a mechanism must be a tuple of {kind.__name__}(...), got {given!r}.")
 
 
 def _with_ground(forces: Iterable[Force], coordinates: Iterable[Coordinate]) -> tuple[Force, ...]:
@@ -443,21 +454,24 @@ def _check_numbers(mechanism: Mechanism) -> None:
 def _check_ports(mechanism: Mechanism) -> None:
     coordinates = {c.name for c in mechanism.coordinates}
     roads = {r.name for r in mechanism.roads}
-    ports = [(f"strut {s.name!r}", p, coordinates | roads) for s in mechanism.struts for p in (s.upper, s.lower)]
-    ports += [(f"tyre {t.name!r}", t.port, coordinates) for t in mechanism.tyres]
-    ports += [(f"force {f.name!r}", f.port, coordinates) for f in mechanism.forces]
-    ports += [(f"point {p.name!r}", p.port, coordinates) for p in mechanism.points]
-    for where, port, may_hold in ports:
+    of_struts = coordinates | roads
+    ports = [("strut", s.name, p, of_struts) for s in mechanism.struts for p in (s.upper, s.lower)]
+    ports += [("tyre", t.name, t.port, coordinates) for t in mechanism.tyres]
+    ports += [("force", f.name, f.port, coordinates) for f in mechanism.forces]
+    ports += [("point", p.name, p.port, coordinates) for p in mechanism.points]
+    for kind, of, port, may_hold in ports:
         if not isinstance(port, Mapping):
             raise MechanismError(
-                f"The port of {where} must map coordinates to lever arms, as {{'body': 1.0}}; got {port!r}."
+                f"The port of {kind} {of!r} must map coordinates to lever arms, as {{'body': 1.0}}; got {port!r}."
             )
         for name, lever in port.items():
             if name not in may_hold:
                 known = ", ".join(sorted(coordinates)) or "none"
-                raise MechanismError(f"{where}: unknown coordinate {name!r}; available: {known}.")
+                raise MechanismError(f"{kind} {of!r}: unknown coordinate {name!r}; available: {known}.")
             if not is_number(lever):
-                raise MechanismError(f"The lever arm of {name!r} in {where} must be a finite number, got {lever!r}.")
+                raise MechanismError(
+                    f"The lever arm of {name!r} in {kind} {of!r} must be a finite number, got {lever!r}."
+                )
     for strut in mechanism.struts:
         if _travel(strut) == {}:
             raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port, so its travel is zero.")

@@ -20,6 +20,15 @@ from inerter.vehicle.mechanism import (
 )
 from inerter.vehicle.vehicle import VehicleModel
 
+_ROADS = (RoadInput("road"),)
+_FORCES = (Force("sprung_force", {"sprung": 1.0}),)
+_OUTPUTS = PerformanceOutputs(
+    comfort=(OutputWeight("sprung_acceleration"),),
+    tyre_load=(OutputWeight("tyre_load"),),
+    load_input="sprung_force",
+    load_output="sprung_displacement",
+)
+
 
 @dataclass(frozen=True)
 class QuarterCar(VehicleModel):
@@ -56,12 +65,7 @@ class QuarterCar(VehicleModel):
             coordinates=(Coordinate("sprung", self.sprung_mass), Coordinate("unsprung", self.unsprung_mass)),
             struts=(Strut("strut", self.strut, upper={"sprung": 1.0}, lower={"unsprung": 1.0}),),
             tyres=(Tyre("tyre", Spring(self.tyre_stiffness), port={"unsprung": 1.0}, road="road"),),
-            roads=(RoadInput("road"),),
-            forces=(Force("sprung_force", {"sprung": 1.0}),),
-            measures=PerformanceOutputs(
-                comfort=(OutputWeight("sprung_acceleration"),),
-                tyre_load=(OutputWeight("tyre_load"),),
-                load_input="sprung_force",
-                load_output="sprung_displacement",
-            ),
+            roads=_ROADS,
+            forces=_FORCES,
+            measures=_OUTPUTS,
         )

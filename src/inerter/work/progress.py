@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from contextvars import ContextVar
 from dataclasses import dataclass, replace
 from threading import Event, RLock, Thread
@@ -174,14 +174,10 @@ def receiving_steps(hearer: Hearer | None) -> Iterator[None]:
         _LISTENER.reset(before)
 
 
-@contextmanager
-def logging_steps() -> Iterator[None]:
-    """Log steps of the work in this block, if there is no listener and logging is enabled."""
-    if _LISTENER.get() is not None or not LOGGER.isEnabledFor(logging.INFO):
-        yield
-        return
-    with listening(Listener(_Log())):
-        yield
+def logging_steps() -> AbstractContextManager[None]:
+    """Log steps of the work in a block, if there is no listener and logging is enabled."""
+    is_logged = _LISTENER.get() is None and LOGGER.isEnabledFor(logging.INFO)
+    return listening(Listener(_Log())) if is_logged else nullcontext()
 
 
 class _Log:

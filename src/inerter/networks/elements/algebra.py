@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import reduce
+from itertools import chain
 from operator import is_
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
@@ -87,8 +88,7 @@ class CombinedNetwork(Network):
     name: str | None
 
     def elements(self) -> Iterator[Element]:
-        for part in self.parts:
-            yield from part.elements()
+        return chain.from_iterable([part.elements() for part in self.parts])
 
     def with_parts(self, parts: Sequence[Network]) -> Self:
         """The same combination of other parts; the same object if none differs."""

@@ -194,7 +194,7 @@ class Element(Network):
         return type(self)(value, *more, self.name)  # type: ignore[call-arg]  # thrice as quick as `replace`
 
     def elements(self) -> Iterator[Element]:
-        yield self
+        return iter((self,))
 
     def as_linear(self) -> Network:
         """Network that replaces the element in linear analysis, also where its value is free."""

@@ -36,6 +36,7 @@ from inerter.systems.outputs import check_bounded, check_inputs, find, main_outp
 from inerter.vehicle.mechanism import check_known
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 from inerter.work.pool import Pool
+from inerter.work.progress import logging_steps
 from inerter.work.running import map_items, running_on
 
 Array = NDArray[np.float64]
@@ -225,8 +226,8 @@ def evaluate(vehicle: Vehicle, index: IndexLike, method: Method, *, executor: Ex
     """
     several = check_request(vehicle, index, method)
     check_fixed(vehicle)
-    with running_on(executor) as pool:
-        if executor is not None:
+    with logging_steps() if executor is None else running_on(executor) as pool:
+        if pool is not None:
             _prepare(pool, vehicle, [index], method)
         of_excited = getattr(getattr(type(method), "estimate", None), "of_excited", None)
         if of_excited is None or is_composite(index):

@@ -8,6 +8,7 @@ import math
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tomllib
@@ -92,11 +93,15 @@ for line in sys.stdin:
 """
 
 
-@dataclass(frozen=True)
+@dataclass
 class Session:
-    """One process in which the distribution is installed, for all that does not need a fresh one."""
+    """One process in which the distribution is installed, for all that does not need a fresh one.
 
-    process: subprocess.Popen[str]
+    A process that has not answered when a test runs out of time is ended, since its answer would be read as the next.
+    """
+
+    place: Path
+    process: subprocess.Popen[str] | None = None
 
     def command(self, *arguments: str, cwd: Path, code: int = 0) -> tuple[str, str]:
         """What `inerter` with these arguments says on both streams."""
@@ -106,11 +111,26 @@ class Session:
         """What a program prints."""
         return self._asked([str(cwd), program, ()], 0)[0]
 
+    def end(self) -> None:
+        """End the process; the next request begins another."""
+        if self.process is not None:
+            self.process.kill()
+            self.process.communicate()
+            self.process = None
+
     def _asked(self, request: list[object], expected: int) -> tuple[str, str]:
+        if self.process is None:
+            environment, pipe = {**os.environ, "PYTHONPATH": _with_path(self.place)}, subprocess.PIPE
+            command = [sys.executable, "-c", SESSION]
+            self.process = subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe, text=True)
         assert self.process.stdin is not None
         assert self.process.stdout is not None
-        print(json.dumps(request), file=self.process.stdin, flush=True)
-        code, out, err = json.loads(self.process.stdout.readline())
+        try:
+            print(json.dumps(request), file=self.process.stdin, flush=True)
+            code, out, err = json.loads(self.process.stdout.readline())
+        except BaseException:
+            self.end()
+            raise
         assert code == expected, err
         return out, err
 
@@ -122,10 +142,33 @@ def _with_path(place: Path) -> str:
 
 @pytest.fixture(scope="module")
 def session(place: Path) -> Iterator[Session]:
-    command, environment = [sys.executable, "-c", SESSION], {**os.environ, "PYTHONPATH": _with_path(place)}
-    pipe = subprocess.PIPE
-    with subprocess.Popen(command, env=environment, stdin=pipe, stdout=pipe, text=True) as process:
-        yield Session(process)
+    found = Session(place)
+    yield found
+    found.end()
+
+
+class _OutOfTimeError(Exception):
+    """Raised by the alarm of a test."""
+
+
+def test_an_answer_that_came_too_late_is_not_read_as_the_next_one(place: Path, tmp_path: Path) -> None:
+    """As a time limit of a test interrupts it, while the process goes on."""
+    session = Session(place)
+    session.python("print('begun')", tmp_path)
+
+    def ring(*_: object) -> None:
+        raise _OutOfTimeError
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(_OutOfTimeError):
+            session.python("import time; time.sleep(1.0); print('late')", tmp_path)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert session.python("print('next')", tmp_path) == "next\n"
+    session.end()
 
 
 def inerter(place: Path, *arguments: str, cwd: Path, code: int = 0) -> subprocess.CompletedProcess[str]:

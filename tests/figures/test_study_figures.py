@@ -14,7 +14,7 @@ from synthetic import LONG, a_map, designs, improved, judged, sweep, with_value
 from inerter.errors import StudyError
 from inerter.figures.designs import frequency_responses, improvement_bars
 from inerter.figures.study import draw_study, study_figures
-from inerter.figures.style import new_figure, style_context
+from inerter.figures.style import log_axis, new_figure, style_context
 from inerter.figures.sweeps import parameter_curves, sweep_curves
 from inerter.methods.registry import brief_words_of
 
@@ -187,6 +187,16 @@ def test_sweep_curves_run_in_the_order_of_the_swept_values_and_in_a_handy_unit()
     assert left.get_xlabel() == right.get_xlabel() == "k [kN/m]"
     assert left.get_ylabel() == "Ride comfort J1 [m/s²]"
     assert set(lines(right)) == {"S1 (baseline)", "S2", "S3"}
+
+
+@pytest.mark.parametrize(("low", "high"), [(1.8, 900.0), (0.02, 9.9), (2.0, 1.9e3), (3.0, 300.0), (0.5, 2e4)])
+def test_a_logarithmic_axis_has_three_labels_or_more(low, high):
+    _, (ax,) = new_figure(1, 1, height=3.0)
+    ax.plot([low, high], [low, high])
+    ax.set_ylim(low, high)
+    log_axis(ax, "y")
+    shown = [tick for minor in (False, True) for tick in ax.yaxis.get_ticklabels(minor=minor) if tick.get_text()]
+    assert len([tick for tick in shown if low <= tick.get_position()[1] <= high]) >= 3
 
 
 def test_parameters_at_a_bound_have_open_markers():

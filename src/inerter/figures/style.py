@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, count
-from math import ceil
+from math import ceil, floor, log10
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,7 @@ WIDE = 7.0  # two columns of a journal [inch]
 _LEAST_RATIO = 6.0  # a log axis shows at least this ratio of values, so that two of its labels 1, 2, 5 are on it
 _LOG_RATIO = 20.0  # values within this ratio are on a linear axis
 _LABELLED_RATIO = 300.0  # up to which ratio a log axis labels 2 and 5 too
+_LEAST_POWERS = 3  # powers of ten that suffice as labels of a longer one
 
 # Okabe and Ito (2008), distinct for all kinds of colour vision; without yellow, which is faint on white.
 _COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
@@ -177,7 +178,8 @@ def log_axis(ax: Axes, which: str, *, least_ratio: float = _LEAST_RATIO) -> None
         middle, half = (low * high) ** 0.5, least_ratio**0.5
         low, high = middle / half, middle * half
         ax.set(**{f"{which}lim": (low, high)})
-    few = high < _LABELLED_RATIO * low
+    powers = floor(log10(high)) - ceil(log10(low)) + 1
+    few = high < _LABELLED_RATIO * low or powers < _LEAST_POWERS
     plain = FuncFormatter(lambda value, _: typeset(format_number(value)))
     axis.set_major_formatter(plain)
     axis.set_minor_locator(LogLocator(subs=(2.0, 5.0) if few else tuple(range(2, 10))))

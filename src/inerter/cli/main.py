@@ -227,8 +227,8 @@ def explain(key: str | None = None, /) -> None:
 def schema(kind: str = "study", /) -> None:
     """Print the JSON Schema of a kind of files, with which editors complete and check them.
 
-    An editor that knows TOML (those with Taplo do) reads it where the first line
-    of a study file is  #:schema ./study.schema.json
+    Editors with a TOML extension such as Taplo use the schema if the first line
+    of the study file is  #:schema ./study.schema.json
 
     Parameters
     ----------
@@ -283,7 +283,7 @@ def identify(
     /,
     *,
     model: Annotated[
-        str | None, Parameter(help="Model to fit, such as ball-screw, or choose to select the best of all models.")
+        str | None, Parameter(help="Model to fit, such as ball-screw, or choose, which selects the best of all models.")
     ] = None,
     config: Annotated[
         Path | None,
@@ -366,7 +366,9 @@ def export(
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
     ] = (),
-    part: Annotated[str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")] = "",
+    part: Annotated[
+        str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")
+    ] = "",
     speed: Annotated[
         str | None, Parameter(help='Speed of an FMU with one road for all axles, or of a simulation, such as "25 m/s".')
     ] = None,

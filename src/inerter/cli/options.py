@@ -39,7 +39,7 @@ class Cluster:
         Path | None, Parameter(help="Scheduler file of Dask, as an alternative to its address.")
     ] = None
     tls_ca_file: Annotated[
-        Path | None, Parameter(help="Certificate of the authority that signed the scheduler's (PEM).")
+        Path | None, Parameter(help="Certificate of the authority that signed the scheduler's certificate (PEM).")
     ] = None
     tls_cert: Annotated[Path | None, Parameter(help="Client certificate (PEM).")] = None
     tls_key: Annotated[Path | None, Parameter(help="Private key of the client certificate (PEM).")] = None
@@ -104,6 +104,6 @@ class WorkOptions:
 DEFAULT_WORK = WorkOptions()
 LongWork = Annotated[WorkOptions, Parameter(name="*")]
 ForceFile = Annotated[bool, Parameter(negative="", show_default=False, help="Replace a file that this command wrote.")]
-BestFor = Annotated[str | None, Parameter(help="Index for which designs are best, if values are free.")]
+BestFor = Annotated[str | None, Parameter(help="Index whose best designs are taken, if there are design variables.")]
 SweepPoint = Annotated[int | None, Whole, Parameter(help="Number of the point of a sweep, from 1.")]
 AtCondition = Annotated[str | None, Parameter(help="Name or number of the operating condition.")]

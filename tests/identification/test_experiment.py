@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from quick_fits import quick_fit
 
 import inerter as it
 from inerter.identification.experiment import experiment_of
-from inerter.identification.models import on_rig
+from inerter.identification.models import MODELS, on_rig
 from inerter.identification.sensors import encoder_noise
 from inerter.systems.piecewise import piecewise
 
@@ -82,3 +83,18 @@ def test_a_record_that_begins_at_a_turning_point_does_not_begin_at_rest() -> Non
     late = 1e-3 * np.sin(2.0 * np.pi * 3.0 * time)
     begins = [experiment_of(it.Record(time, x + noise, moved)).kept[0] for x in (moved, late, ramp * late)]
     assert begins == [False, False, True]
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_a_true_model_of_a_short_record_is_within_noise_up_to_its_ends(seed: int) -> None:
+    """Of a hundred samples more than a tenth at either end are left out, where the motion rests on a continuation."""
+    random, time = np.random.default_rng([seed, 37]), np.arange(97) / 20.0
+    omega, phase = 2.0 * np.pi * np.array([0.9, 1.9]), random.uniform(0.0, 6.28, 2)
+    tones = np.array([8e-3, 4e-3]) * np.exp(1j * (np.outer(time, omega) + phase))
+    x, v, a = (np.sum(((1j * omega) ** order * tones).real, axis=1) for order in range(3))
+    force = 100.0 * a + 200.0 * v
+    noise = 1.5e-3 * float(np.abs(force).max())
+    read = force + noise * random.standard_normal(97)
+    record = it.Record(time, x + 1e-7 * random.standard_normal(97), read, force_noise=noise)
+    solution = quick_fit(record, MODELS["ideal-viscous"], {"b": 100.0, "c": 200.0})
+    assert solution.misfit.is_noise_limited, solution.misfit

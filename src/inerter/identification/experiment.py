@@ -29,7 +29,9 @@ MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours witho
 _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
 _AT_REST, _TURNING = 0.02, 0.3  # of the largest velocity and acceleration: a table that is at rest, not turning back
-_END = 16  # samples next to an end, at least, where filter and spline of the motion rest on its continuation
+_END, _SHORT = 16, 0.15  # samples next to an end, at least, where filter and spline of the motion rest on its
+# continuation; but of a short record not more than a share of it, as its validation part is a fifth
+_FEWEST = 50  # samples that a fit requires
 _CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2 ...
 _RIGID_KNOTS, _MOST_RIGID_KNOTS = 160.0, 5  # ... and of a rigid device: cubics are worse for accelerations ...
@@ -193,13 +195,15 @@ def experiment_of(
             f"lead: the part discarded at the start, {part}, must be non-negative and shorter than the record, {whole}."
         )
     kept[: round(wait / interval)] = False
-    edge = min(max(round(1.0 / (motion.bandwidth * interval)), _END), count // 10)
+    ends = 1 if at_rest and wait == 0.0 else 2
+    short = min(round(_SHORT * count), (count - _FEWEST) // ends)
+    edge = max(min(round(1.0 / (motion.bandwidth * interval)), count // 10), min(_END, short))
     kept[count - edge :] = False
-    if not at_rest or wait > 0.0:
+    if ends > 1:
         kept[:edge] = False
-    if kept.sum() < 50:
+    if kept.sum() < _FEWEST:
         raise IdentificationError(
-            f"Only {kept.sum()} samples of {record.source!r} can be used; a fit requires at least 50."
+            f"Only {kept.sum()} samples of {record.source!r} can be used; a fit requires at least {_FEWEST}."
         )
     return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept), follows)
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import tomllib
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -251,6 +252,16 @@ def test_budgets_are_those_of_python(client: TestClient) -> None:
     )  # type: ignore[attr-defined]
     found = it.break_even(second, first, study.index("J1"), parameter="f", method=it.StatisticalLinearisation())
     assert (told["value"], told["status"]) == (None if np.isnan(found.value) else found.value, found.status.kind.value)
+    assert told["sentence"].startswith("friction 'f' in 'strut' sticks for a part of the time")  # and so has none
+    doubtful = replace(found, value=12.0, status=it.Status(it.StatusKind.INACCURATE, "friction is large."))
+    known = replace(doubtful, status=it.Status())
+    sentences = [answers._break_even_sentence(one, "S3", "S1") for one in (doubtful, known)]
+    assert re.fullmatch(r"Unreliable: inaccurate: friction is large\. At f = 12 N, .*", sentences[0])
+    assert sentences[1] == "At f = 12 N, S3 is as good as S1."
+    simulated = answers._break_even_sentence(replace(known, standard_error=0.5), "S3", "S1")
+    assert simulated == "At f = 12.00 +- 0.50 N, S3 is as good as S1."
+    none = replace(doubtful, value=np.nan)
+    assert answers._break_even_sentence(none, "S3", "S1") == "friction is large."
 
 
 @pytest.mark.parametrize("parameter", sampled(["f", "k"], ["f"]))

@@ -128,3 +128,6 @@ function methodTitle({ name, sees }) {
     both: "with friction and gaps" }[sees] ?? "";
   return `${words || name} (${name.replaceAll("-", " ")})`;
 }
+
+/** The suffixes of files of records. @param {State} state @returns {string[]} */
+export const recordSuffixes = ({ about }) => about?.record_suffixes ?? [];

@@ -1,5 +1,6 @@
 // What outlives a moment: the link that holds the state, the tab's own memory, files that are opened and downloaded.
 
+import { recordSuffixes } from "./library.js";
 import { showNewest } from "./parts/controls.js";
 import { baselineOf } from "./questions.js";
 import { empty, isBlank } from "./state/document.js";
@@ -117,18 +118,19 @@ export function download(blob, name) {
 export const fileName = (title) =>
   (title ?? "study").toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-+|-+$/g, "").slice(0, 60) || "study";
 
-const KNOWN = "study files (.toml), result folders, and records (.csv, .tdms, .mf4, .mat)";
-const RECORDS = /\.(csv|tsv|txt|tdms|mf4|mdf|mat)$/i;
+/** Whether a name is that of a file of records. @param {Store} store @param {string} name */
+const isRecord = (store, name) => recordSuffixes(store.get()).some((suffix) => name.toLowerCase().endsWith(suffix));
 
 /** Opens what was dropped or chosen: study files, and measured records. @param {Store} store @param {Api} api
  * @param {Iterable<File>} files */
 export async function open(store, api, files) {
   for (const file of studiesFirst(files)) {
     try {
-      if (RECORDS.test(file.name) && !(await isSummary(file))) await openRecord(store, api, file);
+      if (isRecord(store, file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
       else if (/\.json$/i.test(file.name)) await openFit(store, api, file);
-      else store.say(`${file.name} is not a supported file; supported: ${KNOWN}.`);
+      else store.say(`${file.name} is not a supported file; supported: study files (.toml), result folders, and ${
+        `records (${recordSuffixes(store.get()).join(", ")})`}.`);
     } catch (error) {
       store.say(`${file.name}: ${/** @type {Error} */ (error).message}`, file.name);
     }

@@ -6,7 +6,6 @@ import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
 import { signed } from "../src/panels/answers.js";
-import { budgetTold } from "../src/panels/margins.js";
 import { createStore } from "../src/state/store.js";
 import { keepAsking } from "../src/asking.js";
 import { partsOf } from "./reading.js";
@@ -216,16 +215,6 @@ test("a doubt is told once for all that it is about, and before anything else", 
     "Unreliable: the budget: failed. ",
   );
   assert.equal(doubted([members[1]]), "");
-  const budget = {
-    parameter: "f",
-    value: 12,
-    unit: "N",
-    standard_error: null,
-    status: "inaccurate",
-    message: "friction is large",
-  };
-  assert.match(budgetTold(null, budget, "S3", "S1"), /^Unreliable: .*friction is large\. At f = 12 N/);
-  assert.match(budgetTold(null, { ...budget, status: "ok" }, "S3", "S1"), /^At f = 12 N/);
 });
 
 test("only what is given is handed on: no withheld device, no values of another study", async () => {

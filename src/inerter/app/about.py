@@ -28,6 +28,7 @@ from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import METHODS, averages, method_settings, searches, words_of
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
+from inerter.records.readers import FORMATS
 from inerter.signals.road import ROAD_CLASSES
 from inerter.vehicle.registry import VEHICLES
 
@@ -84,6 +85,7 @@ def about() -> dict[str, Any]:
         "export_note": f"{capital(WITHOUT_CONDITIONS)}.",
         "models": [*MODELS, CHOOSE],
         "model_words": {**{name: model_words(name) for name in MODELS}, CHOOSE: CHOOSE_WORDS},
+        "record_suffixes": list(FORMATS),
         "examples": list(examples()),
     }
 

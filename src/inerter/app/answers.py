@@ -24,11 +24,12 @@ from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.responses import IndexResponse, index_responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
-from inerter.formatting import in_words, typeset
+from inerter.formatting import format_quantity, in_words, typeset
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, methods_that, searches
 from inerter.networks.elements import Damper, Element, Inerter, Spring
 from inerter.networks.elements.algebra import CombinedNetwork, Network
+from inerter.optimisation.budget import BreakEven
 from inerter.report.speeds import SpeedSentences, speed_sentences
 from inerter.systems.graph import full_graph
 from inerter.systems.outputs import outputs
@@ -239,8 +240,18 @@ def break_even(study: Study, body: Body) -> Answer:
             for c in found.crossings
         ],
         "ranges": [{"lower": r.lower, "upper": r.upper, "better": r.better} for r in found.ranges],
+        "sentence": typeset(_break_even_sentence(found, design.name, baseline.name)),
         **found.status.to_json(),
     }
+
+
+def _break_even_sentence(found: BreakEven, name: str, baseline: str) -> str:
+    """Break-even value in words, or why there is none; of a doubtful one the doubt first."""
+    if not np.isfinite(found.value):
+        return found.status.message or "There is no break-even value."
+    value = format_quantity(found.value, found.unit, error=found.standard_error, bound=found.error_bound)
+    doubt = "" if found.status.ok else f"Unreliable: {str(found.status).rstrip('.')}. "
+    return f"{doubt}At {found.parameter} = {value}, {name} is as good as {baseline}."
 
 
 def scatter(study: Study, body: Body) -> Answer:

@@ -6,9 +6,9 @@ import { elementsIn, kindOf } from "../library.js";
 import { answerOf, baselineOf, goalOf, soughtAnswer } from "../questions.js";
 import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
-import { doubted, isOk } from "../parts/doubts.js";
+import { isOk } from "../parts/doubts.js";
 import { html } from "../parts/html.js";
-import { printed, shown, unitFor } from "../state/scale.js";
+import { shown } from "../state/scale.js";
 import { begin, ended } from "../working.js";
 import { Against, indicesOf, signed } from "./answers.js";
 import { JobHead, RUNNING } from "./work.js";
@@ -104,18 +104,6 @@ function Budget({ store, api, indices }) {
     <${Select} label="Index" name="index" selected=${goalOf(state)}
       key=${goalOf(state)} choices=${indices.map(({ symbol }) => symbol)} />
     <button class="edged">Compute</button>
-    <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value
-      ? budgetTold(state.about, value, document.layout, baselineOf(document).layout) : sentence}</p>
+    <p role="status">${is === "coming" ? html`<${Moving} what="Simulating" />` : value?.sentence ?? sentence}</p>
   </form></section>`;
-}
-
-/** What a budget says, first whether it can be relied on. @param {any} about @param {any} found
- * @param {string} layout @param {string} baseline */
-export function budgetTold(about, { parameter, value, unit, standard_error, status, message }, layout, baseline) {
-  if (typeof value !== "number") return message || "There is no break-even value.";
-  const own = unitFor(about, [value], unit);
-  const error = standard_error ? ` ± ${shown(standard_error * own.factor, 2)}` : "";
-  const doubts = doubted([{ of: "the budget", status, message }]);
-  return `${doubts}At ${parameter} = ${shown(value * own.factor)}${error} ${printed(own.unit)}, ${
-    layout} is as good as ${baseline}.`;
 }

@@ -5,6 +5,7 @@ import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
 import { Select, Table, useChoice, formHandler, showNewest } from "../parts/controls.js";
 import { html, useMemo, useState } from "../parts/html.js";
+import { recordSuffixes } from "../library.js";
 import { strutTexts } from "../questions.js";
 import { capital, shown, strutWords } from "../state/scale.js";
 import { Files } from "./files.js";
@@ -21,12 +22,13 @@ export function RigPanel({ store, api }) {
   const state = store.get();
   const [told, setTold] = useState("");
   const fits = Object.values(state.work).filter(({ kind }) => kind === "identify").toReversed();
+  const suffixes = recordSuffixes(state);
   const words = state.about?.model_words ?? {};
   const models = Object.keys(words).sort((one) => (one === CHOOSE ? -1 : 1));
   const [model = CHOOSE, setModel] = useChoice(models);
   return html`<div>
-    <p class="quiet">Drop a measured record anywhere on the page (CSV, TDMS, MDF4, MATLAB), or</p>
-    <label class="file">choose one <input type="file" accept=".csv,.tsv,.txt,.tdms,.mf4,.mdf,.mat" multiple
+    <p class="quiet">Drop a measured record anywhere on the page (${suffixes.join(", ")}), or</p>
+    <label class="file">choose one <input type="file" accept=${suffixes.join()} multiple
       onChange=${(/** @type {Event} */ event) => open(store, api,
         /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label>
     ${state.records.length > 0 &&

@@ -3,7 +3,7 @@
 import { Moving } from "../parts/clock.js";
 import { html, useEffect, useState } from "../parts/html.js";
 import { canonical } from "../network/algebra.js";
-import { kindNamed } from "../library.js";
+import { kindNamed, recordSuffixes } from "../library.js";
 import { drawing, pathOf } from "../network/drawing.js";
 import { open, openedBefore } from "../remembering.js";
 import { openStudy } from "../working.js";
@@ -48,9 +48,9 @@ export function Start({ store, api }) {
         ${vehicles.map(({ title, name }) => html`<button type="button" class="list-row" key=${name}
           onClick=${() => begin(examples.find((each) => each.name === name)?.study)}><span>${title}</span></button>`)}
         <div class="head"><h2>Or with a file</h2></div>
-        <div class="drop">Drop a study file (.toml), a record (.csv, .tdms, .mf4, .mat) or a folder of results anywhere
-          on the page, or<br /><label class="file">choose a file <kbd>Ctrl O</kbd> <input type="file" multiple
-            onChange=${(/** @type {Event} */ event) => open(store, api,
+        <div class="drop">Drop a study file (.toml), a record (${recordSuffixes(store.get()).join(", ")}) or a folder of
+          results anywhere on the page, or<br /><label class="file">choose a file <kbd>Ctrl O</kbd>
+            <input type="file" multiple onChange=${(/** @type {Event} */ event) => open(store, api,
               /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label></div>
         ${openedBefore().length > 0 && html`<div class="head"><h2>Opened before</h2></div>
           ${openedBefore().map(({ title, at, study }) => html`<button type="button" class="list-row" key=${at}

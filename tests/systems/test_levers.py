@@ -205,3 +205,52 @@ def test_simulations_change_as_little_as_levers_do(distance, seed):
     for output in ("body_acceleration", "roll_acceleration", "diagonal_travel", "bar_travel"):
         changed = np.abs(first[output] - second[output]).max()
         assert changed <= 30.0 * distance * np.abs(first[output]).max(), output
+
+
+def pushed(lever):
+    """A lever on two struts, pushed at `lever`: over that, its motion is the same."""
+    return it.Mechanism(
+        coordinates=(it.Coordinate("arm", 2.0, angle=True), it.Coordinate("wheel", 1.0)),
+        struts=(
+            it.Strut("stay", it.Spring(100.0) | it.Damper(1.0), {"arm": 0.7}, it.GROUND),
+            it.Strut("strut", it.Spring(50.0) | it.Damper(1.0), {"arm": 0.3}, {"wheel": 1.0}),
+        ),
+        forces=(it.Force("push", {"arm": lever}),),
+    )
+
+
+@pytest.mark.parametrize("lever", [0.3, 1e-4, 1e-6, 1e-8])
+def test_a_motion_is_proportional_to_a_short_lever(lever):
+    index = it.PeakResponse("push", "arm_displacement")
+    own, whole = (it.evaluate(pushed(one), index, it.Norm()) for one in (lever, 1.0))
+    assert own.value / lever == pytest.approx(whole.value, rel=1e-9)
+
+
+@pytest.mark.parametrize("lever", [5e-9, 3e-10, -3e-10, 1e-12])
+def test_a_lever_that_would_be_lost_is_refused(lever):
+    with pytest.raises(it.InerterError, match=r"lever arm of 'arm' in force 'push' is .*e-.*, less than 1e-08 of its"):
+        pushed(lever)
+
+
+def test_a_short_axle_of_a_long_car_is_refused_and_not_lost():
+    """With 0.4 m in front of 1e9 m behind, pitch acceleration was zero, and "ok"."""
+    strut = it.Spring(1e6) | it.Damper(1e4)
+    with pytest.raises(it.InerterError, match="Give lever arms within eight decades, or 0"):
+        it.HalfCar(1.0, 7e3, 1.0, 1.0, 10.0, 10.0, 0.4, 1e9, front=strut, rear=strut).mechanism()
+
+
+def test_a_lever_of_the_size_of_a_rounding_is_zero():
+    at_zero, rounded = (
+        it.evaluate(pushed(lever), it.PeakResponse("push", "arm_displacement"), it.Norm())
+        for lever in (0.0, 0.1 + 0.2 - 0.3)
+    )
+    assert at_zero.value == rounded.value == 0.0
+
+
+def test_a_small_car_has_the_pitch_of_a_large_one():
+    """The moment on the body has no lever: with all lengths at another scale nothing changes."""
+    strut, values = it.Spring(2e4) | it.Damper(1e3), []
+    for size in (1.0, 2.0**-30):
+        car = it.HalfCar(300.0, 200.0 * size**2, 25.0, 20.0, 1e5, 1e5, 0.8 * size, 1.2 * size, front=strut, rear=strut)
+        values.append(it.evaluate(car, it.RideComfort(it.Road(1e-6, 20.0 * size)), it.Norm()).value / math.sqrt(size))
+    assert values[1] == pytest.approx(values[0], rel=1e-9)

@@ -7,20 +7,21 @@ its upper end minus that of its lower end; its force is positive in tension.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 
 from inerter.deprecation import RenamedAttribute, renamed_keywords
 from inerter.errors import DesignError, MechanismError
-from inerter.formatting import format_quantity, format_range
+from inerter.formatting import format_number, format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.notebook import shown_by
 from inerter.validation import check_positive, is_number, use_python_numbers
 
 SMALLEST, LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
+_ROUNDING, _SHORTEST = 1e-13, 1e-8  # of lever arms of a coordinate, over its longest: a zero, and what is told from one
 Port = Mapping[str, float]
 GROUND: Port = {}
 GROUND_ACCELERATION = "ground_acceleration"  # the input of a mechanism on moving ground [m/s^2]
@@ -472,6 +473,7 @@ def _check_ports(mechanism: Mechanism) -> None:
                 raise MechanismError(
                     f"The lever arm of {name!r} in {kind} {of!r} must be a finite number, got {lever!r}."
                 )
+    _check_levers([(kind, of, port) for kind, of, port, _ in ports if of != GROUND_ACCELERATION])
     for strut in mechanism.struts:
         if _travel(strut) == {}:
             raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port, so its travel is zero.")
@@ -479,6 +481,27 @@ def _check_ports(mechanism: Mechanism) -> None:
         if tyre.road not in roads:
             known = ", ".join(sorted(roads)) or "none"
             raise MechanismError(f"tyre {tyre.name!r}: unknown road {tyre.road!r}; available: {known}.")
+
+
+def _check_levers(ports: Sequence[tuple[str, str, Port]]) -> None:
+    """Raise `MechanismError` for a lever arm so short that analyses would take it for zero, other than by rounding.
+
+    It is compared with those of struts and tyres, as forces and points have no part in the dependence of travels.
+    """
+    longest: dict[str, float] = {}
+    for kind, _, port in ports:
+        if kind in ("strut", "tyre"):
+            for name, lever in port.items():
+                longest[name] = max(abs(lever), longest.get(name, 0.0))
+    for kind, of, port in ports:
+        for name, lever in port.items():
+            most = longest.get(name, 0.0)
+            if _ROUNDING * most < abs(lever) < _SHORTEST * most:
+                raise MechanismError(
+                    f"The lever arm of {name!r} in {kind} {of!r} is {format_number(lever)}, less than "
+                    f"{format_number(_SHORTEST)} of its longest one, {format_number(most)}, and would be lost. "
+                    f"Give lever arms within eight decades, or 0."
+                )
 
 
 def check_values(mechanism: Mechanism) -> None:

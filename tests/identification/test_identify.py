@@ -25,7 +25,7 @@ QUIET = {"encoder_noise": 0.0, "encoder_resolution": 0.0, "force_noise": 0.0, "f
 
 @pytest.fixture(scope="module")
 def paper() -> it.Fit:
-    return it.identify([fit_test(seed=1)], BALL_SCREW, seed=0)
+    return it.identify([fit_test(seed=1, duration=2.5)], BALL_SCREW, seed=0, starts=16)
 
 
 @pytest.mark.campaign

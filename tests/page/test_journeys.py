@@ -6,8 +6,6 @@ import csv
 import json
 import re
 import shutil
-import subprocess
-import sys
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
@@ -22,6 +20,7 @@ from study_text import PAPER_CAR, study_text
 import inerter as it
 from inerter.app.designs import design_of
 from inerter.app.documents import study_from
+from inerter.cli.main import call
 from inerter.files.rig.loading import load_rig
 from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
 from inerter.files.study.loading import load_study
@@ -38,20 +37,11 @@ def _newcomer(*indices: str) -> str:
     return study_text(settings, vehicle=PAPER_CAR, elements=ELEMENTS, layouts='S1 = "k | c"', title=title)
 
 
-def _run(study: Path, out: Path) -> list[dict[str, Any]]:
+def _run(study: Path, out: Path, capsys: pytest.CaptureFixture[str]) -> list[dict[str, Any]]:
     """The designs that the command line prints."""
-    command = [
-        sys.executable,
-        "-c",
-        "from inerter.cli.start import main; main()",
-        "run",
-        str(study),
-        "-o",
-        str(out),
-        "--json",
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return list(json.loads(done.stdout)["designs"])
+    capsys.readouterr()
+    assert call(["run", str(study), "-o", str(out), "--json"]) == 0
+    return list(json.loads(capsys.readouterr().out)["designs"])
 
 
 def _study(visitor: Visitor) -> Any:
@@ -132,7 +122,10 @@ def test_a_newcomer_builds_optimises_and_undoes_by_keyboard(visitor: Visitor, tm
     assert _built_compared_and_undone(visitor, tmp_path, _by_keyboard, _type)
 
 
-def test_a_newcomer_builds_optimises_undoes_shares_and_runs(visitor: Visitor, visitors: Any, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("undrawn")
+def test_a_newcomer_builds_optimises_undoes_shares_and_runs(
+    visitor: Visitor, visitors: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     page, served = visitor.page, visitor.served
     optimum = _built_compared_and_undone(visitor, tmp_path, _by_mouse, _press)
 
@@ -147,10 +140,10 @@ def test_a_newcomer_builds_optimises_undoes_shares_and_runs(visitor: Visitor, vi
     assert served.token not in other.page.url
 
     free = other.download("Study file", tmp_path)
-    found = {row["layout"]: row["value"] for row in _run(free, tmp_path / "free") if row["index"] == "J1"}
+    found = {row["layout"]: row["value"] for row in _run(free, tmp_path / "free", capsys) if row["index"] == "J1"}
     assert found["S2"] == optimum["J1"]
     fixed = other.download("This design, values fixed", tmp_path)
-    assert {row["index"]: row["value"] for row in _run(fixed, tmp_path / "fixed")} == optimum
+    assert {row["index"]: row["value"] for row in _run(fixed, tmp_path / "fixed", capsys)} == optimum
 
 
 def test_every_example_opens(visitor: Visitor) -> None:

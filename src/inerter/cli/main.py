@@ -366,9 +366,7 @@ def export(
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
     ] = (),
-    part: Annotated[
-        str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")
-    ] = "",
+    part: Annotated[str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")] = "",
     speed: Annotated[
         str | None, Parameter(help='Speed of an FMU with one road for all axles, or of a simulation, such as "25 m/s".')
     ] = None,

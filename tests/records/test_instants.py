@@ -181,3 +181,10 @@ def test_a_table_that_has_not_begun_to_move_is_not_held(seed: int) -> None:
     x = np.rint((x + 2e-7 * random.standard_normal(x.size)) * 1e6) * 1e-6
     assert held_value_instants(x) == []
     assert held_value_instants(x[::-1]) == []
+
+
+def test_a_record_of_ten_seconds_between_samples_is_inspected() -> None:
+    """As times in milliseconds that are read as seconds give, in which no mains hum can be seen."""
+    record = sound(0, 400)
+    slow = Record(1e4 * record.time, record.displacement, record.force)
+    assert not {"hum", "line"} & {f.kind.value for f in findings(slow)}

@@ -310,7 +310,7 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
     Friction answers one frequency with its odd multiples, so a multiple of a motion above 4 Hz is not taken for hum.
     """
     rate = 1.0 / record.interval
-    if record.duration < 1.0:
+    if record.duration < 1.0 or min(HUM) > 0.45 * rate:
         return []
     size = min(record.time.size, round(10.0 * rate))
     frequency, density = welch(record.force - np.mean(record.force), rate, nperseg=size)

@@ -1,12 +1,20 @@
-"""Validation of numbers, used by all layers where input enters."""
+"""Validation of numbers and arguments, used by all layers where input enters."""
 
 from __future__ import annotations
 
+import functools
+import inspect
 import math
+import os
+from collections.abc import Callable
+from itertools import chain
 from numbers import Integral, Real
-from typing import TypeGuard
+from typing import ParamSpec, TypeGuard, TypeVar
 
 from inerter.errors import InerterError
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 def is_number(value: object) -> TypeGuard[float]:
@@ -76,3 +84,61 @@ def check_whole(error: type[InerterError], what: str, value: object, least: int 
         expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
         raise error(f"{what} must be {expected}, got {value!r}.")
     return int(value)
+
+
+def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Decorator of a public function that raises `error` for an argument that is not what its annotation says.
+
+    It checks flags, strings, paths and objects of the classes in `_OBJECTS`; other annotations are for the function.
+
+    >>> @checked(InerterError)
+    ... def shown(name: str, bold: bool = False) -> None: ...
+    >>> shown(["a"])
+    Traceback (most recent call last):
+    inerter.errors.InerterError: `name` must be a string, got ['a'].
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        given = inspect.signature(function).parameters
+        wanted = {name: found for name, one in given.items() if (found := _alternatives(one.annotation))}
+        names = list(given)
+
+        @functools.wraps(function)
+        def call(*args: P.args, **kwargs: P.kwargs) -> R:
+            for name, value in chain(zip(names, args, strict=False), kwargs.items()):
+                if name in wanted and not any(_is_a(value, kind) for kind in wanted[name]):
+                    words = dict.fromkeys(_WORDS.get(kind, f"a {kind}") for kind in wanted[name])
+                    raise error(f"`{name}` must be {' or '.join(words)}, got {_short(value)}.")
+            return function(*args, **kwargs)
+
+        return call
+
+    return decorate
+
+
+_WORDS = {"bool": "True or False", "str": "a string", "Path": "a path", "os.PathLike[str]": "a path", "None": "None"}
+_OBJECTS = frozenset({"Axes", "Dataset", "LinearSystem", "Record", "Trajectory"})
+
+
+def _alternatives(annotation: object) -> list[str]:
+    """What an annotation allows, if all of that can be checked."""
+    kinds = [kind.strip().removeprefix("xr.") for kind in str(annotation).split("|")]
+    return kinds if all(kind in _WORDS or kind in _OBJECTS for kind in kinds) else []
+
+
+def _is_a(value: object, kind: str) -> bool:
+    match kind:
+        case "None":
+            return value is None
+        case "bool":
+            return isinstance(value, bool) or type(value).__name__ == "bool"  # of NumPy
+        case "str":
+            return isinstance(value, str)
+        case "Path" | "os.PathLike[str]":
+            return isinstance(value, os.PathLike)
+    return any(one.__name__ == kind for one in type(value).__mro__)
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 and "\n" not in text else f"an object of type {type(value).__name__}"

@@ -81,7 +81,7 @@ def unreadable(folder):
 good = text(HEADER + "".join(ROWS))
 time, x, force = ("time [s]", T), ("x [m]", X), ("F [N]", F)
 BAD = {
-    "no path": (lambda _: 7, {}, "path of a record file must be a text or a Path; got 7"),
+    "no path": (lambda _: 7, {}, "`path` must be a string or a path, got 7"),
     "no file": (lambda folder: folder / "b.csv", {}, "file not found"),
     "a folder": (lambda folder: folder, {}, "is a folder"),
     "a file without a suffix": (text("", "bench"), {}, "unsupported file suffix ''"),

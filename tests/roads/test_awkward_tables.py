@@ -84,7 +84,7 @@ def test_a_spacing_in_place_of_distances(tmp_path):
 
 TABLE = "distance [m], left [mm], right [mm], note [m]\n0,1,2,9\n1,2,1,9\n2,0,0,9\n"
 BAD = {
-    "a number": ((3,), {}, "must be that of a CSV or CRG file; got 3"),
+    "a number": ((3,), {}, "`path` must be a string or a path, got 3"),
     "a folder": ((".",), {}, "is not a file"),
     "absent": (("absent.csv",), {}, "file not found"),
     "another kind": (("road.xlsx",), {}, "unsupported file suffix '.xlsx'"),

@@ -94,5 +94,5 @@ def test_not_text(tmp_path):
 def test_bad_arguments(road_file):
     with pytest.raises(SignalError, match=r"speed over a profile must be a positive number of m/s, got 0\.0"):
         profile(road_file(HEADER + "0,0\n1,1\n"), 0.0)
-    with pytest.raises(SignalError, match="must be that of a CSV or CRG file; got 5"):
+    with pytest.raises(SignalError, match="`path` must be a string or a path, got 5"):
         profile(5, 20.0)

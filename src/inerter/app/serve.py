@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from inerter.errors import StudyError
+from inerter.validation import checked
 
 if TYPE_CHECKING:
     from inerter.files.study.study import Study
@@ -16,6 +17,7 @@ LIMIT, RECORD_LIMIT = 10_000_000, 2_000_000_000  # bytes
 _EXTRA = {"starlette", "uvicorn", "anyio", "h11"}
 
 
+@checked(StudyError)
 def serve(
     study: str | Path | Study | None = None,
     *,

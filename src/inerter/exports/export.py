@@ -13,8 +13,10 @@ from inerter.exports.kind import ExportKind
 from inerter.exports.registry import EXPORTS
 from inerter.exports.request import Exportable, ExportSpec
 from inerter.formatting import format_list
+from inerter.validation import checked
 
 
+@checked(ExportError)
 def export(
     of: Exportable, to: str, path: str | os.PathLike[str] | None = None, *, overwrite: bool = False, **options: Any
 ) -> Any:

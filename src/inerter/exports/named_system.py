@@ -23,6 +23,7 @@ from inerter.systems.graph import linear_graph
 from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import input_unit, velocity_of
 from inerter.systems.unknowns import state_units, unknowns
+from inerter.validation import checked
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
@@ -123,6 +124,7 @@ class NamedSystem:
             raise ExportError(f'{program} has no descriptor systems. Export the form "state-space".')
 
 
+@checked(ExportError)
 def named_system(
     of: Vehicle | LinearSystem,
     inputs: Sequence[str] | str | None = None,

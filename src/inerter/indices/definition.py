@@ -22,6 +22,7 @@ from inerter.systems.input_paths import InputPath, inputs_of
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import of_mount, unit_of
 from inerter.units import PURE, combine_units
+from inerter.validation import checked
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
 
 Array = NDArray[np.float64]
@@ -237,6 +238,7 @@ class OnRoad(Index, Protocol):
         ...
 
 
+@checked(PerformanceIndexError)
 def on_road(
     index: OnRoad,
     mechanism: Mechanism,

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from inerter.errors import PerformanceIndexError
 from inerter.systems.filters import Filter
 from inerter.systems.linear import LinearSystem
+from inerter.validation import checked
 
 Matrix = NDArray[np.float64]
 _BUTTERWORTH = math.sqrt(0.5)
@@ -87,6 +88,7 @@ def weighting_filter(name: str) -> Filter:
 
 
 @cache
+@checked(PerformanceIndexError)
 def iso2631_weighting(name: str) -> LinearSystem:
     """The frequency weighting "Wk", "Wd", "Wf", "We", "Wc" or "Wj" of ISO 2631-1:1997.
 

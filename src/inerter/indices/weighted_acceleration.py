@@ -12,6 +12,7 @@ from inerter.errors import PerformanceIndexError
 from inerter.formatting import format_alike
 from inerter.indices.iso2631 import iso2631_weighting
 from inerter.systems.linear import LinearSystem
+from inerter.validation import checked
 
 Array = NDArray[np.float64]
 _RUNNING = 1.0  # [s] of a running r.m.s. value
@@ -41,6 +42,7 @@ class WeightedAcceleration:
     constant: float = 0.0  # [m/s^2] what was taken from the acceleration before, such as gravity
 
 
+@checked(PerformanceIndexError)
 def frequency_weight(time: ArrayLike, acceleration: ArrayLike, weighting: str = "Wk") -> WeightedAcceleration:
     """An acceleration [m/s^2] at even steps of `time` [s] through a weighting of ISO 2631-1, from rest.
 

@@ -16,6 +16,7 @@ from inerter.methods.objective import Smooth, rows_of
 from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Friction, Network, Parallel
 from inerter.networks.elements.roles import LinearRole
 from inerter.networks.transform import UpsideDown, expand_elements, linearise
+from inerter.validation import checked
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -67,6 +68,7 @@ class StaticStiffness:
         return mounts[self.mount]
 
 
+@checked(PerformanceIndexError)
 def static_stiffness(mount: str) -> StaticStiffness:
     """The static stiffness of the strut or tyre of this name [N/m], as an index or in a limit.
 

@@ -12,6 +12,7 @@ from typing import Any, TypeAlias
 
 from inerter.errors import NetworkError
 from inerter.networks.elements import ELEMENT_TYPES, Bridge, Damper, Element, Inerter, Network, Spring
+from inerter.validation import checked
 
 Tree: TypeAlias = Any  # a leaf is the symbol of an element; else (operator, part, part, ...) with an operator below
 PARALLEL, SERIES, BRIDGE = OPERATORS = ("|", "-", "bridge")  # a bridge has five arms, as `Bridge`
@@ -110,6 +111,7 @@ class Topology:
         return build(self.tree)
 
 
+@checked(NetworkError)
 def enumerate_networks(
     elements: int,
     *,

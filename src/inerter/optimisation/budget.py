@@ -21,7 +21,7 @@ from inerter.methods.method import AveragingMethod, Method, NonlinearitySupport,
 from inerter.networks.elements import Element
 from inerter.networks.elements.registry import ELEMENTS
 from inerter.notebook import shown_by
-from inerter.validation import is_number
+from inerter.validation import checked, is_number
 from inerter.vehicle.replace_values import mounted_elements, to_editable, with_elements
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
@@ -91,6 +91,7 @@ class BreakEven:
     error_bound: float = np.nan
 
 
+@checked(DesignError)
 def break_even(
     design: Vehicle,
     baseline: Vehicle,

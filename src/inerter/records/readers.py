@@ -21,7 +21,7 @@ from inerter.records.gaps import fill_missing, have_same_times, resample_onto_fo
 from inerter.records.prepare import with_missing_times
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
-from inerter.validation import is_number
+from inerter.validation import checked, is_number
 
 Opener = Callable[[str, str], AbstractContextManager[Contents]]
 FORMATS: dict[str, tuple[str, Opener]] = {
@@ -47,6 +47,7 @@ _MAGIC = (
 )
 
 
+@checked(RecordError)
 def read_record(
     path: str | os.PathLike[str],
     *,
@@ -116,8 +117,6 @@ def read_record(
 
 
 def _checked_path(path: str | os.PathLike[str]) -> str:
-    if not isinstance(path, str | os.PathLike):
-        raise RecordError(f"The path of a record file must be a text or a Path; got {path!r}.")
     name = os.fsdecode(path)
     if os.path.isdir(name):
         raise RecordError(f"{name!r} is a folder. Give the path of a file in it.")

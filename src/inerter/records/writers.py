@@ -14,10 +14,12 @@ from inerter.atomic_io import export
 from inerter.errors import RecordError
 from inerter.records.optional_readers import library
 from inerter.records.record import CHANNELS, Record
+from inerter.validation import checked
 
 _NOT_GIVEN = "unknown source"
 
 
+@checked(RecordError)
 def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: bool = False) -> None:
     """Write the channels with their units; the format follows from the suffix: .csv, .tsv, .txt, .tdms, .mf4 or .mat.
 

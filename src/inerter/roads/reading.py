@@ -24,7 +24,7 @@ from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import SampledSignal
 from inerter.units import is_unit, is_unit_for, parse_quantity, quote_value
-from inerter.validation import is_number
+from inerter.validation import checked, is_number
 
 Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
@@ -48,6 +48,7 @@ class Columns(TypedDict, total=False):
     right: str | int | None
 
 
+@checked(RecordError)
 def read_profile(
     path: str | os.PathLike[str],
     *,
@@ -91,6 +92,7 @@ def read_profile(
 
 
 @renamed_keywords(track="side")
+@checked(SignalError)
 def profile(path: str | os.PathLike[str], speed: float, side: str = "") -> SampledSignal:
     r"""A measured road of one track as a signal at `speed` [m/s] from its first point at t = 0, by a cubic spline.
 
@@ -120,8 +122,6 @@ def _check_path(path: str | os.PathLike[str], named: Columns) -> str:
             raise RecordError(
                 f"read_profile(...) has no argument {role!r}; columns are {', '.join(Columns.__annotations__)}."
             )
-    if not isinstance(path, str | os.PathLike):
-        raise RecordError(f"The path of a profile must be that of a CSV or CRG file; got {path!r}.")
     name = os.fsdecode(path)
     if "\0" in name or os.path.isdir(name):
         raise RecordError(f"{name!r} is not a file. Give the path of a CSV or CRG file.")

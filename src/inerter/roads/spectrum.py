@@ -14,7 +14,7 @@ from inerter.errors import RecordError
 from inerter.formatting import format_quantity, format_range
 from inerter.roads.profile import Profile
 from inerter.signals.road import ROAD_CLASSES, Road, RoadClass, RoadShape
-from inerter.validation import is_number
+from inerter.validation import checked, is_number
 
 Matrix = NDArray[np.float64]
 N0 = 0.1  # [cycle/m]
@@ -72,6 +72,7 @@ class RoadSpectrum:
 
 
 @renamed_keywords(track="side")
+@checked(RecordError)
 def road_spectrum(
     profile: Profile, lowest: float = LOWEST, highest: float = HIGHEST, side: str = "", sampling: str = POINTS
 ) -> RoadSpectrum:

@@ -17,10 +17,12 @@ from inerter.simulation.inputs import BatchInputs, check_keywords, initial_of
 from inerter.simulation.simulate import simulate
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import piecewise
+from inerter.validation import checked
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import map_items, running_on
 
 
+@checked(SimulationError)
 def simulate_to_files(
     vehicles: Sequence[Vehicle],
     folder: str | Path,

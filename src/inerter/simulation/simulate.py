@@ -29,7 +29,7 @@ from inerter.simulation.observe import trajectory_of
 from inerter.simulation.periodic_steady_state import common_period, settle
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.validation import is_number, use_python_numbers
+from inerter.validation import checked, is_number, use_python_numbers
 from inerter.vehicle.mechanism import GROUND_ACCELERATION
 from inerter.vehicle.vehicle import Vehicle
 
@@ -72,6 +72,7 @@ class _Plan:
         return self.initial.end if isinstance(self.initial, Trajectory) else 0.0
 
 
+@checked(SimulationError)
 def simulate(
     vehicle: Vehicle,
     *,

@@ -29,7 +29,7 @@ from inerter.uncertainty.distributions import (
     scatter_of,
     with_free_scatter,
 )
-from inerter.validation import is_number
+from inerter.validation import checked, is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.blas_threads import one_blas_thread
@@ -116,6 +116,7 @@ class Tolerance:
         return Estimate(value, self.unit, self.status, error, interval, self.nominal.realisations)
 
 
+@checked(DesignError)
 def tolerance_analysis(
     design: Vehicle,
     index: IndexLike,

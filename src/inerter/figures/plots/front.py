@@ -12,8 +12,10 @@ from inerter.figures.plots.axes import add_curve_legend, single_axes
 from inerter.figures.style import colour, style_context
 from inerter.formatting import capital
 from inerter.pareto_fronts.front import ParetoFront
+from inerter.validation import checked
 
 
+@checked(DesignError)
 def plot_front(fronts: ParetoFront | Mapping[str, ParetoFront], *, ax: Axes | None = None) -> Axes:
     """Pareto fronts of two indices, with their knees.
 

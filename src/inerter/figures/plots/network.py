@@ -7,12 +7,15 @@ from io import StringIO
 
 from matplotlib.figure import Figure
 
+from inerter.errors import NetworkError
 from inerter.figures.networks import network_figure
 from inerter.figures.style import style_context
 from inerter.networks.elements.algebra import Network
+from inerter.validation import checked
 from inerter.vehicle.vehicle import Vehicle
 
 
+@checked(NetworkError)
 def plot_network(networks: Network | Mapping[str, Network], *, values: bool = False) -> Figure:
     """Drawing of a network, or of several below their names; `values` are written below the names of elements.
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from inerter.errors import LinearSystemError
 from inerter.figures.plots.axes import add_curve_legend, label_complex_plane, single_axes
 from inerter.figures.plots.responses import Designs, Response, response_curves
 from inerter.figures.style import style_context
+from inerter.validation import checked
 
 
+@checked(LinearSystemError)
 def plot_nyquist(
     designs: Designs, response: Response, *, frequency: ArrayLike | None = None, ax: Axes | None = None
 ) -> Axes:

@@ -13,8 +13,10 @@ from inerter.figures.maps import index_maps
 from inerter.figures.style import new_figure, style_context
 from inerter.figures.sweeps import sweep_curves
 from inerter.formatting import format_list
+from inerter.validation import checked
 
 
+@checked(StudyError)
 def plot_sweep(results: xr.Dataset, index: str, *, axes: Sequence[Axes] | None = None) -> list[Axes]:
     """Best values of an index over the swept number, and the improvements over the baseline if there is one.
 
@@ -57,6 +59,7 @@ def plot_sweep(results: xr.Dataset, index: str, *, axes: Sequence[Axes] | None =
         return list(sweep_curves(results, index, _axes(axes, count, columns=count)))
 
 
+@checked(StudyError)
 def plot_map(results: xr.Dataset, index: str, *, axes: Sequence[Axes] | None = None) -> list[Axes]:
     """Values of an index over two swept numbers: of the baseline itself, of other layouts as improvements over it.
 

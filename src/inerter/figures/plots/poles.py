@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from inerter.errors import LinearSystemError
 from inerter.figures.plots.axes import add_curve_legend, label_complex_plane, single_axes
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import colour, style_context
 from inerter.formatting import format_number
 from inerter.systems.assemble import state_space
+from inerter.validation import checked
 
 
+@checked(LinearSystemError)
 def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
     """Poles of designs [1/s], with the rays of equal damping ratio.
 

@@ -16,12 +16,14 @@ from inerter.formatting import capital, in_words
 from inerter.systems.assemble import state_space
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import input_unit, unit_of
+from inerter.validation import checked
 
 Array = NDArray[np.float64]
 
 _STEPS = 2000  # samples
 
 
+@checked(LinearSystemError)
 def plot_step_response(
     designs: Designs, response: tuple[str, str], *, duration: float = 2.0, ax: Axes | None = None
 ) -> Axes:

@@ -14,12 +14,14 @@ from inerter.figures.plots.axes import add_legend_above, single_axes
 from inerter.figures.style import colour, new_figure, style_context
 from inerter.formatting import capital, choose_scale, format_range
 from inerter.simulation.trajectory import Trajectory
+from inerter.validation import checked
 
 Array = NDArray[np.float64]
 
 _SHADES = {"stick": "#F6DDA8", "open": "#D5E4F2"}
 
 
+@checked(SimulationError)
 def plot_trajectory(
     run: Trajectory,
     outputs: Sequence[str] | str,
@@ -63,6 +65,7 @@ def plot_trajectory(
     return several
 
 
+@checked(SimulationError)
 def plot_loop(
     run: Trajectory,
     across: str,

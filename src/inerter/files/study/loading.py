@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from inerter.errors import StudyError
 from inerter.files.common.elements import free_networks_in, with_tied_values
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
@@ -30,10 +31,12 @@ from inerter.files.study.tasks import tasks
 from inerter.methods.registry import methods_that, searches
 from inerter.networks.elements import Element, Free
 from inerter.units import quote_value
+from inerter.validation import checked
 
 WHAT = "a study file"
 
 
+@checked(StudyError)
 def load_study(path: str | Path) -> Study:
     """The study in the TOML file at `path`.
 

@@ -17,7 +17,7 @@ import xarray as xr
 
 from inerter.atomic_io import write_netcdf, write_text
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import OK, Status, StatusKind
+from inerter.errors import OK, Status, StatusKind, StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Outcome, portable
@@ -32,6 +32,7 @@ from inerter.files.study.tasks import Answer, Designs, TaskResults, by_task, jou
 from inerter.formatting import format_list
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.table import csv_rows, csv_text
+from inerter.validation import checked
 from inerter.work.checkpoints import Checkpoint, join_checkpoints, storing_checkpoints
 from inerter.work.journal import Journal
 from inerter.work.origin import versions
@@ -93,6 +94,7 @@ class StudyResult:
                 yield f"{answer.name}: {answer.status_text}"
 
 
+@checked(StudyError)
 def run_study(
     study: Study,
     folder: str | Path | Results,

@@ -55,5 +55,5 @@ def test_a_file_that_cannot_be_written(tmp_path: Path) -> None:
     ):
         with pytest.raises(RecordError, match=said):
             it.write_record(bench(), path)
-    with pytest.raises(RecordError, match="requires a Record"):
+    with pytest.raises(RecordError, match="`record` must be a Record"):
         it.write_record("bench", tmp_path / "a.csv")  # type: ignore[arg-type]

@@ -42,8 +42,6 @@ def write_record(record: Record, path: str | os.PathLike[str], *, overwrite: boo
     ...     bool((it.read_record(path).force == 2.0 * time).all())
     True
     """
-    if not isinstance(record, Record):
-        raise RecordError(f"write_record requires a Record, got {type(record).__name__}.")
     name = os.fsdecode(path)
     suffix = Path(name).suffix.lower()
     if suffix not in WRITERS:

@@ -25,7 +25,7 @@ from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_b
 from inerter.identification.parameter_space import Space, space_of
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.recording_faults import as_measured, faulty_samples, nonlinear_load_cells, recording_faults
-from inerter.identification.residual_tests import NoiseReference
+from inerter.identification.residual_tests import NoiseReference, scatter_of
 from inerter.identification.search import improve
 from inerter.identification.statements.causes import Suspect
 from inerter.networks.elements import Element, Free, Network
@@ -401,8 +401,10 @@ def _explanation(
     parts = list(zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True))
     shares = [_explained_share(now, then) for now, then, limit in parts if then > limit]
     if causes.hidden is not Hidden.NONE:
-        # Fisher's ratio has shown the load cell already, of which the validation data may be too few to show anything.
-        counted = parts[:1] if causes.hidden is Hidden.LOAD_CELL else parts
+        # Fisher's ratio has shown the load cell already, of which the validation data may be too few to show anything:
+        # the residual there need not get smaller, but it does not grow by more than its scatter.
+        agrees = after.checked <= before.checked * (1.0 + scatter_of(before.limits[1]))
+        counted = parts[:1] if causes.hidden is Hidden.LOAD_CELL and agrees else parts
         shares = [1.0 - (now / then) ** 2 for now, then, _ in counted if then > 0.0]
     return Explanation(
         name=hypothesis.name,

@@ -80,6 +80,11 @@ class NoiseReference:
         )
 
 
+def scatter_of(limit: float) -> float:
+    """Relative standard deviation of the misfit of sensor noise whose largest value is this limit."""
+    return (limit - _SOUND) / _CHANCE
+
+
 def noise_reference(problem: FitProblem, point: Matrix, checked: Sequence[Mask], seed: int) -> NoiseReference | None:
     """The judge of a device at a point, with independent noise for draws and whitening; None if not simulated."""
     known, draws = noise_residuals(problem, point, (seed, 5)), noise_residuals(problem, point, (seed, 6))

@@ -442,7 +442,7 @@ def test_what_is_made_of_doubtful_numbers_says_so_first(visitor: Visitor, tmp_pa
     page.locator(".budget [name=parameter]").select_option("f")
     page.locator(".budget").get_by_role("button", name="Compute").click()
     page.wait_for_function("() => document.querySelector('.budget form[aria-busy=false] [role=status]')?.textContent")
-    assert page.inner_text(".budget [role=status]").startswith("Unreliable: the budget: inaccurate")
+    assert page.inner_text(".budget [role=status]").startswith("Unreliable: inaccurate: friction 'f'")
 
     page.select_option(".answers select >> nth=0", "norm")
     page.click("#tab-tolerance")

@@ -234,3 +234,10 @@ def test_constant_channels_are_refused():
         flat = record.with_notes(**{name: np.full(record.time.size, 2.0)})
         with pytest.raises(it.InerterError, match="constant"):
             it.identify([flat], BALL_SCREW)
+
+
+def test_a_load_cell_that_is_far_faster_than_the_samples_is_refused():
+    """Times in ms that count as s: each of these steps would be computed in a thousand."""
+    record = fit_test(duration=1.0)
+    with pytest.raises(it.InerterError, match=r"are 1 s apart, .* of 1 kHz is too fast .* unit of its times"):
+        it.identify([record.with_notes(time=1e3 * record.time, force_bandwidth=1e3)], BALL_SCREW)

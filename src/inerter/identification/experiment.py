@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError
-from inerter.formatting import format_alike
+from inerter.formatting import format_alike, format_quantity
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.records.dropouts import MAD
 from inerter.records.record import Record
@@ -32,6 +32,7 @@ _AT_REST, _TURNING = 0.02, 0.3  # of the largest velocity and acceleration: a ta
 _END, _SHORT = 16, 0.15  # samples next to an end, at least, where filter and spline of the motion rest on its
 # continuation; but of a short record not more than a share of it, as its validation part is a fifth
 _FEWEST = 50  # samples that a fit requires
+_FASTEST_CELL = 600.0  # of the sampling rate: bandwidth of a load cell, whose equations are solved in steps of its own
 _CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2 ...
 _RIGID_KNOTS, _MOST_RIGID_KNOTS = 160.0, 5  # ... and of a rigid device: cubics are worse for accelerations ...
@@ -164,7 +165,8 @@ def experiment_of(
     `lead` [s] at the start are not compared; by default none if the table starts from rest, else a tenth. A table that
     turns back at the first sample does not start from rest. The force of a `rigid` device follows its accelerations.
 
-    Raises `IdentificationError` for records that are too long, or `RecordError` for uneven ones.
+    Raises `IdentificationError` for records that are too long or far slower than their load cell, or `RecordError` for
+    uneven ones.
     """
     if record.time.size > MOST_SAMPLES:
         raise IdentificationError(
@@ -177,6 +179,12 @@ def experiment_of(
         )
     if np.ptp(record.force) == 0.0:
         raise IdentificationError(f"The force of {record.source!r} is constant, so no parameter is identifiable.")
+    if record.force_bandwidth is not None and record.force_bandwidth * record.interval > _FASTEST_CELL:
+        raise IdentificationError(
+            f"The samples of {record.source!r} are {format_quantity(record.interval, 's')} apart, at which a load cell "
+            f"of {format_quantity(record.force_bandwidth, 'Hz')} is too fast to be computed. Check the unit of its "
+            "times, or leave out the bandwidth."
+        )
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
     try:

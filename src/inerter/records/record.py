@@ -19,7 +19,6 @@ from inerter.validation import is_number
 Matrix = NDArray[np.float64]
 CHANNELS = {"time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2"}
 UNIFORM = 1e-3  # of an interval: times that stray less from an even spacing count as even
-_SIZES = 1e-30, 1e30  # of the largest value of a channel in SI units: squares and ratios of others overflow
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +28,8 @@ class Record:
     The displacement is that of the moved end of the device; the force is positive in tension, as everywhere here.
     `notes` list the processing of the channels since they were received, one sentence each.
 
-    Raises `RecordError` for channels that are not finite real vectors of one length of at least 4 or of a size that
-    nothing has, or times that do not increase.
+    Raises `RecordError` for channels that are not finite real vectors of one length of at least 4, or times that do not
+    increase.
 
     >>> import inerter as it
     >>> import numpy as np
@@ -77,12 +76,6 @@ class Record:
                     f"The {name} of {self.source!r} has {bad.size} samples that are not finite, the first at "
                     f"sample {bad[0]}. Trim them away, or read the file with ",
                     *(Remedy(Action.GAPS, "fill"), "."),
-                )
-            largest = float(np.max(np.abs(array), initial=0.0))
-            if largest and not _SIZES[0] <= largest <= _SIZES[1]:
-                raise RecordError(
-                    f"The {name} of {self.source!r} reaches {format_quantity(largest, CHANNELS[name])}; from "
-                    f"{format_range(*_SIZES, CHANNELS[name])} is possible. Check the unit of its column."
                 )
             array.setflags(write=False)
             object.__setattr__(self, name, array)

@@ -255,8 +255,9 @@ def _convert(text: str, number: str, given: str, unit: str) -> float:
         up, down = _factors(given, unit)
         if math.isnan(up):
             problem = f"{_describe_unit(given)} is a logarithmic unit, or one with another zero"
-            is_ratio = _have_same_dimension(unit, "")
-            _fail(text, problem, _RATIO if is_ratio else f"a unit of {unit}", "" if is_ratio else f"120 {unit}")
+            if _have_same_dimension(unit, ""):
+                _refuse(text, problem, _RATIO, "")
+            _fail(text, problem, f"a unit of {unit}", f"120 {unit}")
         value = float(number) * up if up >= 1.0 else float(number) / down
     except (OverflowError, ZeroDivisionError):
         value = math.inf
@@ -308,9 +309,12 @@ def _describe_unit(given: str) -> str:
 
 
 def _fail(text: object, problem: str, expected: str, example: str) -> NoReturn:
+    _refuse(text, problem, f"a number with {expected}", example)
+
+
+def _refuse(text: object, problem: str, expected: str, example: str) -> NoReturn:
     like = f', such as "{example}"' if example else ""
-    wanted = expected if expected == _RATIO else f"a number with {expected}"
-    raise UnitError(f"Got {quote_value(text)}: {problem}; expected {wanted}{like}.")
+    raise UnitError(f"Got {quote_value(text)}: {problem}; expected {expected}{like}.")
 
 
 @cache

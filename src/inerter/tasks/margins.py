@@ -186,18 +186,20 @@ def margins(asked: MarginRequest, tell: Progress = lambda done, total, what: Non
 
 
 def _closes_on_inertia(trial: _Trial) -> bool:
-    """Whether a gap that the design does not have would have inertia on both sides, so that no motion is defined."""
+    """Whether a gap that the design does not have would have inertia on both sides: a spring in series mends that."""
     if trial.is_present or not isinstance(trial.element, Gap):
         return False
 
-    def open_gap(part: Element) -> Element:
-        return part.with_value(1.0) if part.label == trial.parameter else part
-
-    try:
-        piecewise(with_elements(trial.design, open_gap).mechanism())
-    except MechanismError:
+    def is_defined(real: Network) -> bool:
+        design = with_elements(trial.design, lambda part: real if part.label == trial.parameter else part)
+        try:
+            piecewise(design.mechanism())
+        except MechanismError:
+            return False
         return True
-    return False
+
+    gap = trial.element.with_value(1.0)
+    return not is_defined(gap) and is_defined(gap - Spring(RealInerter().stiffness))
 
 
 def method_that_models(asked: MarginRequest, design: Vehicle, *, gaps: bool) -> str:

@@ -15,7 +15,7 @@ from inerter.files.study.loading import load_study
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.running import run_study
 from inerter.report.conclusions import conclusion_sentences
-from inerter.report.index_summary import best_layouts
+from inerter.report.verdicts import best_layouts
 
 BY_BOTH = ("norm", "expected-value")
 

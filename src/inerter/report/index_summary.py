@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy
 
-from inerter.decision.results import percent_below
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     NOTICEABLE,
-    bound_of,
     by_method,
     by_which,
     compared_layouts,
@@ -29,11 +27,9 @@ from inerter.figures.labels import (
     swept_text,
     swept_words,
 )
-from inerter.files.common.roads import EFFECT, ROAD_ERROR
 from inerter.formatting import format_list, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.indices.registry import INDICES
-from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import with_decisive_method
 from inerter.methods.ties import equally_least
 
@@ -68,56 +64,6 @@ def _doubt(results: xr.Dataset, index: str) -> str:
     if len(methods(results)) == 1:
         message = with_decisive_method(Status(StatusKind.INACCURATE, message), methods(results)[0]).message
     return f"Not certain ({_UNSURE}: {format_list(of)}, {message.rstrip('.')}). "
-
-
-def best_layouts(results: xr.Dataset, index: str) -> list[str]:
-    """All layouts that may have the least value of `index`, the simplest first. For a study without a sweep."""
-    row = one_method(results).sel(index=index)
-    row = row.squeeze([name for name, size in row.sizes.items() if size == 1 and name != "layout"])
-    values = np.atleast_1d(row["value"].values).tolist()
-    least = equally_least(values)
-    if not least:
-        return []
-    lowest, margins = least[0], margins_of(row, least[0])
-    names = results["layout"].values.tolist()
-    within = [percent_below(values[lowest], value) <= largest_error(row, lowest, i) for i, value in enumerate(values)]
-    best = [i for i, v in enumerate(values) if i in least or v - values[lowest] <= margins[i] or within[i]]
-    return _simplest_first(results, [names[i] for i in best])
-
-
-def largest_error(row: xr.Dataset, layout: int, base: int) -> float:
-    """Largest error of the improvement of a layout over another one [%], sampling apart; both by their numbers."""
-    pair = [row.isel(layout=number) for number in (layout, base)] if "layout" in row.dims else [row, row]
-    (value, bound), (other, other_bound) = ((float(one["value"]), bound_of(one)) for one in pair)
-    return improvement_bound(value, other, bound, other_bound, *(road_effects(one, EFFECT) for one in pair))
-
-
-def road_effects(value: xr.Dataset, name: str) -> dict[str, list[float]]:
-    """Effects of the errors of a measured road on a value, by error; `name` is their variable."""
-    found: dict[str, list[float]] = {}
-    if name in value:
-        for error, effect in zip(value[ROAD_ERROR].values.tolist(), value[name].values.tolist(), strict=True):
-            found.setdefault(error, []).append(effect)
-    return found
-
-
-def margins_of(row: xr.Dataset, best: int) -> list[float]:
-    """Margin of each value over the `best` within the 95 % confidence interval; zero without uncertainties.
-
-    Where there is a baseline, errors are those of differences from it on the same roads.
-    """
-    if "standard_error" not in row or "realisations" not in row:
-        return [0.0] * row.sizes.get("layout", 1)
-    names, baseline = np.atleast_1d(row["layout"].values).tolist(), row.attrs["baseline"]
-    errors = np.atleast_1d(row["standard_error"].values)
-    if baseline and "improvement_error" in row:
-        own = np.atleast_1d(row["improvement_error"].values) / 100.0 * float(row["value"].sel(layout=baseline))
-        known = [names.index(baseline) == i or np.isfinite(own[i]) for i in range(len(names))]
-        errors = np.where(known, np.where(np.array(names) == baseline, 0.0, own), errors)
-    freedom = np.maximum(np.atleast_1d(row["realisations"].values) - 1, 1)
-    student = scipy.special.stdtrit(np.minimum(freedom, freedom[best]), 0.975)
-    found = student * np.hypot(errors, errors[best])
-    return [float(margin) for margin in np.nan_to_num(found)]
 
 
 def _simplest_first(results: xr.Dataset, names: list[str]) -> list[str]:

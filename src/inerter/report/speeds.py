@@ -20,8 +20,9 @@ from inerter.figures.labels import (
 )
 from inerter.formatting import capital, format_quantity
 from inerter.methods.registry import brief_words_of
-from inerter.report.index_summary import best_layouts, extremes, place_text
+from inerter.report.index_summary import extremes, place_text
 from inerter.report.json_data import json_data
+from inerter.report.verdicts import best_layouts
 
 _LOST = 0.5  # of an improvement, or of a value's own size, that is much to lose
 _TUNED = 0.1  # by which a value may exceed what it would be if the speed only made the road rougher

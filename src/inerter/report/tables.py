@@ -30,7 +30,8 @@ from inerter.figures.labels import (
 )
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, capital, choose_scale, format_number, format_percent, format_quantity
-from inerter.report.index_summary import best_layouts, extremes, is_compared, place_text
+from inerter.report.index_summary import extremes, is_compared, place_text
+from inerter.report.verdicts import best_layouts
 from inerter.table import Cell, Column, Quantity, Row, Table, columns
 
 _MOST_SWEPT = 16  # rows of a table over a sweep

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from math import hypot, isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
-import numpy as np
+import scipy
 
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
@@ -24,15 +25,15 @@ from inerter.figures.labels import (
     layouts,
     method_label,
     methods,
+    one_method,
 )
-from inerter.files.common.roads import OTHER_EFFECT, ROAD_ERROR
+from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.study import Study
 from inerter.formatting import format_list
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
 from inerter.report.conditions import condition_names, in_condition
-from inerter.report.index_summary import largest_error, margins_of, road_effects
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -52,6 +53,11 @@ def verdict_sentences(
     its methods model or neglect is named.
     """
     return [" ".join(_sentences(results, study, index, static)) for index in indices(results)]
+
+
+def best_layouts(results: xr.Dataset, index: str) -> list[str]:
+    """All layouts that may have the least value of `index` by the first method, the simplest first."""
+    return [one.name for one in _winners(one_method(results), index)]
 
 
 def _sentences(
@@ -74,20 +80,32 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
     one = by_method(results, method) if method else results
     row = _row(one, index)
     each = {name: _row(in_condition(one, i), index) for i, name in enumerate(condition_names(one))}
-    designs = [
-        replace(_design(results, row, index, name, method, study), in_conditions=tuple(_in_conditions(each, name)))
-        for name in layouts(results)
-    ]
-
-    def over(first: DesignResult, second: DesignResult) -> Improvement | None:
-        return _over(row, first, second)
-
+    designs = []
+    for name in layouts(results):
+        mechanism = study.design(name).mechanism() if study is not None and method else None
+        modelled, neglected = nonlinear_elements(mechanism, method) if mechanism is not None else ((), ())
+        designs.append(
+            replace(
+                _design(results, row, index, name, method),
+                others=tuple(_others(results, row, index, name)),
+                in_conditions=tuple(_in_conditions(each, name)),
+                at_bounds=tuple(_at_bounds(row.sel(layout=name))),
+                modelled=modelled,
+                neglected=neglected,
+            )
+        )
     return decide(
         designs,
-        over,
+        partial(_over, row),
         method=brief_words_of(method) if method else "",
         remedy=remedy_of(method) if method else "",
     )
+
+
+def _winners(results: xr.Dataset, index: str) -> Sequence[DesignResult]:
+    """Best designs for an index, of results by one method."""
+    row, names = _row(results, index), results["layout"].values.tolist()
+    return decide([_design(results, row, index, name) for name in names], partial(_over, row)).winners
 
 
 def _row(results: xr.Dataset, index: str) -> xr.Dataset:
@@ -107,15 +125,10 @@ def _in_conditions(each: Mapping[str, xr.Dataset], layout: str) -> Iterator[tupl
                 yield name, by
 
 
-def _design(
-    results: xr.Dataset, row: xr.Dataset, index: str, layout: str, method: str, study: Study | None
-) -> DesignResult:
-    """Best design of a layout for an index, as a decision compares it."""
+def _design(results: xr.Dataset, row: xr.Dataset, index: str, layout: str, method: str = "") -> DesignResult:
+    """Best design of a layout for an index, with its value and its improvement over the baseline."""
     design, baseline = row.sel(layout=layout), row.attrs["baseline"]
-    base = row.sel(layout=baseline) if baseline else None
-    modelled, neglected = (
-        nonlinear_elements(study.design(layout).mechanism(), method) if study is not None and method else ((), ())
-    )
+    is_compared = baseline and layout != baseline
     return DesignResult(
         name=layout,
         goal=IndexResult(
@@ -126,12 +139,8 @@ def _design(
             status=_status(results, design, method),
             standard_error=error_of(design),
             error_bound=bound_of(design),
-            improvement=None if base is None or layout == baseline else _improvement(row, design, base),
+            improvement=_improvement(row, design, row.sel(layout=baseline)) if is_compared else None,
         ),
-        others=() if base is None else tuple(_others(results, index, design, base)),
-        at_bounds=tuple(_at_bounds(design)),
-        modelled=modelled,
-        neglected=neglected,
         is_baseline=layout == baseline,
         n_elements=int(design["elements"]) if "elements" in design.coords else 0,
     )
@@ -149,12 +158,11 @@ def _improvement(row: xr.Dataset, design: xr.Dataset, base: xr.Dataset) -> Impro
     percent, own, reference = float(design["improvement"]), float(design["value"]), float(base["value"])
     if not isfinite(percent):
         return None
-    margin = _margin(row, str(design["layout"].item()), str(base["layout"].item()))
     return Improvement(
         percent,
         error_of(design, "improvement"),
         bound_of(design, "improvement"),
-        abs(percent * reference) / 100.0 <= margin + 2.0 * ACCURACY * min(abs(own), abs(reference)),
+        abs(percent * reference) / 100.0 <= _margin(row, design, base) + 2.0 * ACCURACY * min(abs(own), abs(reference)),
     )
 
 
@@ -166,21 +174,44 @@ def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improve
     percent = percent_below(own, other)
     if isnan(percent):
         return None
-    errors = [_relative_error(row.sel(layout=one.name)) * one.goal.value for one in (first, second)]
-    margin, names = _margin(row, first.name, second.name), np.atleast_1d(row["layout"].values).tolist()
+    error = hypot(*(0.0 if isnan(one.goal.standard_error) else one.goal.standard_error for one in (first, second)))
+    pair = [row.sel(layout=one.name) for one in (first, second)]
+    effects = [_road_effects(one, EFFECT) for one in pair]
     return Improvement(
         percent,
-        100.0 * hypot(*errors) / abs(other) if all(map(isfinite, errors)) and any(errors) else nan,
-        largest_error(row, names.index(first.name), names.index(second.name)),
-        is_tie=abs(own - other) <= margin + 2.0 * ACCURACY * min(abs(own), abs(other)),
+        100.0 * error / abs(other) if isfinite(error) and error else nan,
+        improvement_bound(own, other, first.goal.error_bound, second.goal.error_bound, *effects),
+        is_tie=abs(own - other) <= _margin(row, *pair) + 2.0 * ACCURACY * min(abs(own), abs(other)),
     )
 
 
-def _margin(row: xr.Dataset, first: str, second: str) -> float:
+def _margin(row: xr.Dataset, first: xr.Dataset, second: xr.Dataset) -> float:
     """Difference of two values within their 95 % confidence interval; zero without uncertainties."""
-    names = np.atleast_1d(row["layout"].values).tolist()
-    margins = margins_of(row, names.index(second))
-    return float(margins[names.index(first)])
+    if "standard_error" not in row or "realisations" not in row:
+        return 0.0
+    freedom = max(min(int(one["realisations"]) for one in (first, second)) - 1, 1)
+    margin = scipy.special.stdtrit(freedom, 0.975) * hypot(*(_sampling_error(row, one) for one in (first, second)))
+    return 0.0 if isnan(margin) else float(margin)
+
+
+def _sampling_error(row: xr.Dataset, design: xr.Dataset) -> float:
+    """Standard error of the difference from the baseline on the same roads; without one, that of the value itself."""
+    baseline = row.attrs["baseline"]
+    if baseline and design["layout"].item() == baseline and "improvement_error" in row:
+        return 0.0
+    of_difference = error_of(design, "improvement")
+    if baseline and isfinite(of_difference):
+        return of_difference / 100.0 * float(row["value"].sel(layout=baseline))
+    return error_of(design)
+
+
+def _road_effects(value: xr.Dataset, name: str) -> dict[str, list[float]]:
+    """Effects of the errors of a measured road on a value, by error; `name` is their variable."""
+    found: dict[str, list[float]] = {}
+    if name in value:
+        for error, effect in zip(value[ROAD_ERROR].values.tolist(), value[name].values.tolist(), strict=True):
+            found.setdefault(error, []).append(effect)
+    return found
 
 
 def _relative_error(design: xr.Dataset) -> float:
@@ -188,23 +219,24 @@ def _relative_error(design: xr.Dataset) -> float:
     return error / abs(value) if isfinite(error) and value else 0.0
 
 
-def _others(results: xr.Dataset, index: str, design: xr.Dataset, base: xr.Dataset) -> Iterator[IndexResult]:
+def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> Iterator[IndexResult]:
     """Other indices of the same design, compared with those of the baseline's design.
 
     Their standard errors are not among the results; those of the index itself, relative to it, take their place.
     """
-    if "other_value" not in design:
+    baseline = row.attrs["baseline"]
+    if not baseline or "other_value" not in row:
         return
-    spread = 100.0 * hypot(_relative_error(design), _relative_error(base))
-    for i, other in enumerate(results["other"].values.tolist()):
-        own, reference = (float(one["other_value"].values[i]) for one in (design, base))
+    pair = [row.sel(layout=name) for name in (layout, baseline)]
+    spread = 100.0 * hypot(*map(_relative_error, pair))
+    for other in results["other"].values.tolist():
+        both = [one.sel(other=other) for one in pair]
+        own, reference = (float(one["other_value"]) for one in both)
         by, percent = None, percent_below(own, reference)
-        if design["layout"].item() != base["layout"].item() and isfinite(percent):
-            pair = [one.isel(other=i) for one in (design, base)]
-            widest, of_base = (float(one["other_error_bound"]) if "other_error_bound" in one else nan for one in pair)
-            bound = improvement_bound(
-                own, reference, widest, of_base, *(road_effects(one, OTHER_EFFECT) for one in pair)
-            )
+        if layout != baseline and isfinite(percent):
+            bounds = [float(one["other_error_bound"]) if "other_error_bound" in one else nan for one in both]
+            effects = [_road_effects(one, OTHER_EFFECT) for one in both]
+            bound = improvement_bound(own, reference, bounds[0], bounds[1], *effects)
             by = Improvement(percent, bound=bound, is_tie=abs(percent) <= _TWO_SIDED * spread)
         if other != index and not (isnan(own) and isnan(reference)):
             yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
@@ -222,19 +254,17 @@ def _at_bounds(design: xr.Dataset) -> Iterator[str]:
 
 def _with_other_methods(results: xr.Dataset, index: str, told: Decision) -> str:
     """Verdict, and the best layouts by the other methods of the study."""
-    names, sentence = methods(results), told.verdict.sentence
-    decisive = decisive_method(names) if names else ""
-    clauses = [
-        f"; {method_label(results, method)} {_clause(by_method(results, method), index, told)}"
-        for method in names
-        if method != decisive and (told.winners or study_decision(by_method(results, method), index).winners)
-    ]
-    return f"{sentence.removesuffix('.')}{''.join(clauses)}."
+    names, text = methods(results), told.verdict.sentence.removesuffix(".")
+    for method in names:
+        if method != decisive_method(names):
+            winners = _winners(by_method(results, method), index)
+            if told.winners or winners:
+                text += f"; {method_label(results, method)} {_winners_clause(winners, told)}"
+    return f"{text}."
 
 
-def _clause(results: xr.Dataset, index: str, told: Decision) -> str:
+def _winners_clause(winners: Sequence[DesignResult], told: Decision) -> str:
     """Clause on the best layouts by another method."""
-    winners = study_decision(results, index).winners
     if not winners:
         return "there is none"
     names, goal = [one.name for one in winners], winners[0].goal

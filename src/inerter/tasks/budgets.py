@@ -24,7 +24,7 @@ from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
-from inerter.report.index_summary import best_layouts
+from inerter.report.verdicts import best_layouts
 from inerter.statements import Severity
 from inerter.table import MISSING, Column, Row, Table, cells
 from inerter.units import quote_value

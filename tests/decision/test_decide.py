@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from inerter.decision.caveats import CaveatKind, Over
 from inerter.decision.decide import Decision, VerdictKind, decide
-from inerter.decision.results import DesignResult, Improvement, IndexResult, LimitResult
+from inerter.decision.results import AtBound, DesignResult, Improvement, IndexResult, LimitResult
 from inerter.errors import OK, Status, StatusKind
 
 STATUSES = [OK, OK, OK, Status(StatusKind.INACCURATE, "it sticks"), Status(StatusKind.UNSTABLE, "pole at 3 rad/s")]
@@ -53,7 +53,7 @@ def results(draw: st.DrawFn) -> tuple[list[DesignResult], Over]:
             others=(IndexResult("J3", "dynamic tyre load", "N", rows[i][1], improvement=compared(i, 1)),),
             limits=tuple(draw(st.lists(LIMITS, max_size=2))),
             unchosen=unchosen[i],
-            at_bounds=draw(st.sampled_from([(), ("c is at its upper bound, 10 kN s/m",)])),
+            at_bounds=draw(st.sampled_from([(), (AtBound("c", "upper", "10 kN s/m"),)])),
             neglected=draw(st.sampled_from([(), ("friction f",)])),
             is_baseline=i == base,
             n_elements=draw(st.integers(2, 4)),

@@ -136,7 +136,7 @@ class _DesignComparison:
             ),
             limits=tuple(one.result() for one in limits),
             unchosen=design.unchosen,
-            at_bounds=at_bounds(design.free, design.values, self.study.free_units),
+            at_bounds=tuple(at_bounds(design.free, design.values, self.study.free_units)),
             modelled=modelled,
             neglected=neglected,
             is_baseline=design is self.baseline,

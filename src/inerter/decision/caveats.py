@@ -209,10 +209,9 @@ def _neglect_caveats(contest: Contest) -> Iterator[Caveat]:
 
 def _bounds(contest: Contest) -> Iterator[Caveat]:
     for design in contest.winners:
-        for text in design.at_bounds:
-            name, _, rest = text.partition(" is ")
-            sentence = f"{name} of {design.name} is {rest}; beyond it the design may be better."
-            yield Caveat(CaveatKind.BOUND, sentence, Severity.INFO)
+        for one in design.at_bounds:
+            place = f"{one.name} of {design.name} is at its {one.bound} bound, {one.value}"
+            yield Caveat(CaveatKind.BOUND, f"{place}; beyond it the design may be better.", Severity.INFO)
 
 
 def _unchosen(contest: Contest) -> Iterator[Caveat]:

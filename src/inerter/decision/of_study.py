@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import isclose
 
+from inerter.decision.results import AtBound
 from inerter.files.study.limits import limit_text
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
@@ -55,16 +56,9 @@ def nonlinear_elements(mechanism: Mechanism, method: str) -> tuple[tuple[str, ..
     return ((), tuple(found)) if blind else (tuple(found), ())
 
 
-def at_bounds(free: Mapping[str, Free], values: Mapping[str, float], units: Mapping[str, str]) -> tuple[str, ...]:
-    """Clauses on the values of design variables that are at a bound."""
-    found = []
+def at_bounds(free: Mapping[str, Free], values: Mapping[str, float], units: Mapping[str, str]) -> Iterator[AtBound]:
+    """Design variables whose values are at a bound."""
     for name, one in free.items():
         for bound, end in (("lower", one.lower), ("upper", one.upper)):
             if end > 0.0 and isclose(values[name], end, rel_tol=_AT_BOUND):
-                found.append(bound_clause(name, bound, end, units[name]))
-    return tuple(found)
-
-
-def bound_clause(name: str, bound: str, value: float, unit: str) -> str:
-    """Clause on a design variable at its lower or upper bound."""
-    return f"{name} is at its {bound} bound, {format_quantity(value, unit)}"
+                yield AtBound(name, bound, format_quantity(end, units[name]))

@@ -127,6 +127,15 @@ class LimitResult:
 
 
 @dataclass(frozen=True)
+class AtBound:
+    """Design variable at its lower or upper bound."""
+
+    name: str
+    bound: str  # "lower" or "upper"
+    value: str  # text with unit
+
+
+@dataclass(frozen=True)
 class DesignResult:
     """Results of one design; `modelled` and `neglected` are its friction and gaps, by the method's support."""
 
@@ -136,7 +145,7 @@ class DesignResult:
     in_conditions: tuple[tuple[str, Improvement], ...] = ()  # of the goal, in each of several conditions by its name
     limits: tuple[LimitResult, ...] = ()
     unchosen: tuple[str, ...] = ()
-    at_bounds: tuple[str, ...] = ()  # "c is at its upper bound, 10 kN s/m"
+    at_bounds: tuple[AtBound, ...] = ()
     modelled: tuple[str, ...] = ()
     neglected: tuple[str, ...] = ()
     is_baseline: bool = False

@@ -12,8 +12,8 @@ import scipy
 
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
-from inerter.decision.of_study import bound_clause, decisive_method, nonlinear_elements, remedy_of
-from inerter.decision.results import DesignResult, Improvement, IndexResult, percent_below
+from inerter.decision.of_study import decisive_method, nonlinear_elements, remedy_of
+from inerter.decision.results import AtBound, DesignResult, Improvement, IndexResult, percent_below
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     bound_of,
@@ -29,7 +29,7 @@ from inerter.figures.labels import (
 )
 from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.study import Study
-from inerter.formatting import format_list
+from inerter.formatting import format_list, format_quantity
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
@@ -242,14 +242,14 @@ def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> It
             yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
 
 
-def _at_bounds(design: xr.Dataset) -> Iterator[str]:
+def _at_bounds(design: xr.Dataset) -> Iterator[AtBound]:
     if "at_bound" not in design:
         return
     for name in design["parameter"].values.tolist():
         entry = design.sel(parameter=name)
         value, bound = float(entry["parameter_value"]), str(entry["at_bound"].item())
         if bound and isfinite(value):
-            yield bound_clause(name, bound, value, str(entry["parameter_unit"].item()))
+            yield AtBound(name, bound, format_quantity(value, str(entry["parameter_unit"].item())))
 
 
 def _with_other_methods(results: xr.Dataset, index: str, told: Decision) -> str:

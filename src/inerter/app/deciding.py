@@ -13,7 +13,7 @@ from inerter.app.designs import Design, baseline_of, designs_of, one_design, pro
 from inerter.app.index_values import DesignLimit, limits_at
 from inerter.app.kinds import Tell, report_nothing
 from inerter.app.wire import typeset_sentences
-from inerter.decision.decide import Decision, decide
+from inerter.decision.decide import decide
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
 from inerter.decision.results import DesignResult, Improvement, IndexResult
 from inerter.files.study.conditions import condition_labels
@@ -64,7 +64,7 @@ def decision(study: Study, body: Body) -> Answer:
         },
         "method": method,
         "rows": [compared.row(rank, result) for rank, result in zip(told.ranks, told.designs, strict=True)],
-        "verdict": verdict_of(told),
+        "verdict": typeset_sentences(told.verdict.to_json()),
     }
 
 
@@ -96,19 +96,6 @@ def margins(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
     )
     told: Answer = typeset_sentences(asdict(find_margins(asked, tell)))
     return told
-
-
-def verdict_of(told: Decision) -> Answer:
-    """Verdict for an answer."""
-    verdict = told.verdict
-    return {
-        "sentence": typeset(verdict.sentence),
-        "severity": verdict.answer.value,
-        "caveats": [
-            {"kind": one.kind.value, "sentence": typeset(one.sentence), "severity": one.severity.value}
-            for one in verdict.caveats
-        ],
-    }
 
 
 class _DesignComparison:

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import json
-import math
-from collections.abc import Mapping
 from typing import Any
-
-import numpy as np
 
 from inerter.app.documents import problems_of
 from inerter.errors import InerterError, WorkError
 from inerter.formatting import typeset
+from inerter.report.json_data import json_data
 
 _SENTENCES = ("sentence", "short", "status", "reason", "remedy", "findings")  # keys of sentences and lists of them
 
@@ -26,7 +23,7 @@ class Refusal(Exception):  # noqa: N818 -- an answer, not a fault
 
 def encode_json(data: Any) -> bytes:
     """Data as JSON: nan is null, infinity is text, arrays are lists."""
-    return json.dumps(_plain(data), ensure_ascii=False, allow_nan=False).encode("utf-8", "backslashreplace")
+    return json.dumps(json_data(data), ensure_ascii=False, allow_nan=False).encode("utf-8", "backslashreplace")
 
 
 def typeset_sentences(answer: Any, key: str = "") -> Any:
@@ -65,19 +62,3 @@ def _no_number(text: str) -> Any:
 
 def _shortly(error: Exception) -> str:
     return (str(error).splitlines() or [type(error).__name__])[0][:200]
-
-
-def _plain(value: Any) -> Any:
-    match value:
-        case Mapping():
-            return {str(key): _plain(item) for key, item in value.items()}
-        case list() | tuple():
-            return [_plain(item) for item in value]
-        case np.ndarray():
-            finite = value.dtype.kind != "f" or bool(np.isfinite(value).all())
-            return value.tolist() if finite else _plain(value.tolist())
-        case np.generic():
-            return _plain(value.item())
-        case float() if not math.isfinite(value):
-            return None if math.isnan(value) else str(value)
-    return value

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
+from typing import Any
 
 from inerter.decision.caveats import Caveat, Contest, Over, caveats_of, unchosen_clause, unknown_limits
 from inerter.decision.results import DesignResult, Improvement, possibly_least
@@ -38,6 +39,13 @@ class DecisionVerdict(Statement):
     def sentence(self) -> str:
         """The verdict in words."""
         return f"Not certain: {self.text}" if self.answer is VerdictKind.DOUBT else self.text
+
+    def to_json(self) -> dict[str, Any]:
+        """The verdict with its caveats as a plain dictionary."""
+        caveats = [
+            {"kind": one.kind.value, "sentence": one.sentence, "severity": one.severity.value} for one in self.caveats
+        ]
+        return {"sentence": self.sentence, "severity": self.answer.value, "caveats": caveats}
 
 
 @dataclass(frozen=True)

@@ -46,12 +46,7 @@ def as_text(result: StudyResult) -> Iterator[str]:
 def _verdicts(result: StudyResult) -> Iterator[dict[str, Any]]:
     """Verdict on each index with its caveats, for JSON."""
     for index in result.data["index"].values.tolist():
-        verdict = study_decision(result.data, index, result.study).verdict
-        caveats = [
-            {"kind": one.kind.value, "sentence": one.sentence, "severity": one.severity.value}
-            for one in verdict.caveats
-        ]
-        yield {"index": index, "sentence": verdict.sentence, "severity": verdict.answer.value, "caveats": caveats}
+        yield {"index": index, **study_decision(result.data, index, result.study).verdict.to_json()}
 
 
 def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:

@@ -121,7 +121,7 @@ _OBJECTS = frozenset({"Axes", "Dataset", "LinearSystem", "Record", "Trajectory"}
 
 
 def _alternatives(annotation: object) -> list[str]:
-    """What an annotation allows, if all of that can be checked."""
+    """Alternatives of an annotation; none unless all of them can be checked."""
     kinds = [kind.strip().removeprefix("xr.") for kind in str(annotation).split("|")]
     return kinds if all(kind in _WORDS or kind in _OBJECTS for kind in kinds) else []
 

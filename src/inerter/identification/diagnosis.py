@@ -55,7 +55,7 @@ _SHAFTS = (Suspect.ELASTIC, Suspect.RIGID, Suspect.BACKLASH)  # a stiff one also
 _AT_BOUND, _WIDER = 1e-3, 30.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
 
 
-class Hidden(StrEnum):
+class HiddenCause(StrEnum):
     """Causes that a residual within sensor noise may hide."""
 
     NONE = "none"
@@ -71,18 +71,18 @@ class Causes:
     places: Sequence[Localisation]
     made: list[Hypothesis] | None = None
     point: Matrix | None = None  # the best fit
-    hidden: Hidden = Hidden.NONE
+    hidden: HiddenCause = HiddenCause.NONE
 
     def of(self, problem: FitProblem) -> list[Hypothesis]:
         """Hypotheses of the problem; without a misfit those that the records show, or on the device if it is hidden."""
         if self.made is None:
             lost = lost_samples(problem.experiments)
             known = [*([] if lost is None else [lost]), *faulty_samples(problem.experiments)]
-            if self.hidden is Hidden.LAW:
+            if self.hidden is HiddenCause.LAW:
                 taken = (*_SHAFTS, *(h.name for h in problem.assumed))
                 known = [*laws(problem), *nonlinear_load_cells(problem.experiments)]
                 known = [h for h in known if h.name not in taken]
-            elif self.hidden is Hidden.LOAD_CELL:
+            elif self.hidden is HiddenCause.LOAD_CELL:
                 known = nonlinear_load_cells(problem.experiments)
             elif not self.before.is_noise_limited:
                 known += hypotheses(problem, self.places)
@@ -126,7 +126,7 @@ def explanations(
     slopes = known.jacobian(optimum.point, steps_of(optimum))
     if every:
         return _fit_all(causes, by, optimum, slopes, known)
-    hidden = (replace(causes, made=None, hidden=kind) for kind in (Hidden.LAW, Hidden.LOAD_CELL))
+    hidden = (replace(causes, made=None, hidden=kind) for kind in (HiddenCause.LAW, HiddenCause.LOAD_CELL))
     likely = (c for c in hidden if _is_hidden(known, optimum, slopes, c))
     return next(filter(None, (_fit_all(c, by, optimum, slopes, known) for c in likely)), [])
 
@@ -155,18 +155,18 @@ def _fit_all(
     return _rank([a.explanation for a in (*last, *first[_FITTED:])], causes.hidden)
 
 
-def _rank(every: Sequence[Explanation], hidden: Hidden) -> list[Explanation]:
+def _rank(every: Sequence[Explanation], hidden: HiddenCause) -> list[Explanation]:
     """One explanation of each name, the most likely first; of a misfit that noise hides, those that explain much."""
     found: dict[Suspect, Explanation] = {}
     for e in every:
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
     ranked = sorted(found.values(), key=_likelihood)
-    if hidden is Hidden.NONE or not ranked:
+    if hidden is HiddenCause.NONE or not ranked:
         return ranked
     if ranked[0].name is Suspect.FILTERED_FORCE:  # in place of a delay: intervals contain its values already
         return []
-    least = _SEEN if hidden is Hidden.LAW else 0.0
+    least = _SEEN if hidden is HiddenCause.LAW else 0.0
     return [e for e in ranked if e.explained > max(least, _LIKE * ranked[0].explained)]
 
 
@@ -177,7 +177,7 @@ def _is_hidden(problem: FitProblem, optimum: BestFit, slopes: Matrix, causes: Ca
     device the share has to be large, where the noise is not stated; a nonlinear load cell has to change a value by more
     than its standard error, as one that no residual shows may change it by many.
     """
-    if causes.hidden is Hidden.LAW and all(e.record.force_noise is not None for e in problem.experiments):
+    if causes.hidden is HiddenCause.LAW and all(e.record.force_noise is not None for e in problem.experiments):
         return False
     base = np.linalg.qr(slopes)[0]
 
@@ -187,7 +187,7 @@ def _is_hidden(problem: FitProblem, optimum: BestFit, slopes: Matrix, causes: Ca
     residual = problem.residual(optimum.point)
     left = project(residual)
     square = float(left @ left)
-    competing = _OF_SENSORS if causes.hidden is Hidden.LAW else ()
+    competing = _OF_SENSORS if causes.hidden is HiddenCause.LAW else ()
     for hypothesis in (h for h in causes.of(problem) if h.name not in competing):
         other = _with_hypothesis(problem, hypothesis)
         for point, _ in _starting_points(problem, optimum, other, hypothesis):
@@ -196,7 +196,7 @@ def _is_hidden(problem: FitProblem, optimum: BestFit, slopes: Matrix, causes: Ca
             length = max(float(way @ way), 1e-300)
             gain = float(left @ way) ** 2 / length
             ratio = gain * optimum.samples / max(square - gain, 1e-300)
-            if causes.hidden is Hidden.LAW:
+            if causes.hidden is HiddenCause.LAW:
                 found = gain > _SEEN * square and ratio > _SURE
             else:
                 by = float(left @ way) / length * np.linalg.lstsq(slopes, change)[0]
@@ -400,11 +400,11 @@ def _explanation(
     own = {u.name for u in hypothesis.unknowns}
     parts = list(zip((after.fitted, after.checked), (before.fitted, before.checked), before.limits, strict=True))
     shares = [_explained_share(now, then) for now, then, limit in parts if then > limit]
-    if causes.hidden is not Hidden.NONE:
+    if causes.hidden is not HiddenCause.NONE:
         # Fisher's ratio has shown the load cell already, of which the validation data may be too few to show anything:
         # the residual there need not get smaller, but it does not grow by more than its scatter.
         agrees = after.checked <= before.checked * (1.0 + scatter_of(before.limits[1]))
-        counted = parts[:1] if causes.hidden is Hidden.LOAD_CELL and agrees else parts
+        counted = parts[:1] if causes.hidden is HiddenCause.LOAD_CELL and agrees else parts
         shares = [1.0 - (now / then) ** 2 for now, then, _ in counted if then > 0.0]
     return Explanation(
         name=hypothesis.name,

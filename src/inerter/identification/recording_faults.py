@@ -334,7 +334,7 @@ def _at_readings(experiments: Sequence[Experiment]) -> Hypothesis | None:
         at = channel.positions(force.size)
         mask = np.zeros(force.size, dtype=bool)
         mask[np.minimum(np.ceil(at - 1e-3).astype(int), force.size - 1)] = True
-        given = channel.recorded(np.interp(at, np.arange(force.size), force), force.size)
+        given = channel.record_readings(np.interp(at, np.arange(force.size), force), force.size)
         return as_measured(given, e.record.force, ~mask)
 
     named = {"channels": tuple(dict.fromkeys(channels))}

@@ -51,7 +51,7 @@ class SlowerChannel:
         before = np.floor(at + _WHOLE).astype(int)  # on the line that ends at the reading
         return np.asarray(values[before] + (at - before) * (values[before] - values[np.maximum(before - 1, 0)]))
 
-    def recorded(self, readings: Vector, size: int) -> Vector:
+    def record_readings(self, readings: Vector, size: int) -> Vector:
         """The samples that a recorder makes of readings at these positions."""
         at = self.positions(size)
         if self.way == "interpolated":

@@ -129,14 +129,14 @@ class Descriptor:
         return tuple(np.ascontiguousarray(array, dtype=float) for array in all_arrays)
 
     @cached_property
-    def joined(self) -> JoinedStacks:
+    def joined_stacks(self) -> JoinedStacks:
         """S, [R F], G and J at all values: x' and y are G eta + J (x, u)."""
         S, R, F, Y_eta, Y_x, Y_u = self.stacks
         return self._join(S, R, F, (self.X_eta, self.X_x, self.X_u), (Y_eta, Y_x, Y_u))
 
     @cached_property
     def joined_sizes(self) -> JoinedStacks:
-        """Sizes of the terms of `joined`; those of rates, which are exact, over the number of roundings of others."""
+        """Sizes of the terms of `joined_stacks`; of rates, which are exact, over the number of roundings of others."""
         S, R, F, Y_eta, Y_x, Y_u = self.sizes
         rates = tuple(np.abs(matrix) / _TERMS for matrix in (self.X_eta, self.X_x, self.X_u))
         return self._join(S, R, F, rates, (Y_eta, Y_x, Y_u))
@@ -168,7 +168,7 @@ def close(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
     d, p = descriptor, np.array([1.0, *[values[name] for name in descriptor.free]], dtype=np.longdouble)
-    S, right, G, direct = d.joined.at(p)
+    S, right, G, direct = d.joined_stacks.at(p)
     S_size, right_size, G_size, direct_size = d.joined_sizes.at(p.astype(float))
     T, T_error = _solve_extended(S, right, S_size, right_size)
     whole = direct + G.dot(T)
@@ -179,7 +179,7 @@ def close(
     through = whole[:, n:]
     through[np.abs(through) <= error[:, n:]] = 0.0  # white noise that reaches an output by rounding would be infinite
     fine = ExtendedMatrices(whole, error, n)
-    rounded = fine.rounded
+    rounded = fine.double_precision
     origin = Origin(partial(exact_functions, d, dict(values)), rounded, fine, d.inputs, d.outputs)
     return _named_system(d, sources, tuple(delays)).with_matrices(rounded, origin)
 

@@ -26,7 +26,7 @@ class ExtendedMatrices:
     order: int
 
     @property
-    def rounded(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
+    def double_precision(self) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """A, B, C and D in double precision."""
         whole, n = self.values.astype(float), self.order
         return whole[:n, :n], whole[:n, n:], whole[n:, :n], whole[n:, n:]
@@ -57,7 +57,7 @@ class Origin:
         columns = [*range(n), *(n + self.inputs.index(name) for name in system.inputs)]
         chosen = np.ix_(rows, columns)
         part = ExtendedMatrices(self.fine.values[chosen], self.fine.errors[chosen], n)
-        return part if all(map(np.array_equal, given, part.rounded)) else None
+        return part if all(map(np.array_equal, given, part.double_precision)) else None
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,14 +13,13 @@ from inerter.app.kinds import RESULTS, Tell
 from inerter.app.wire import typeset_sentences
 from inerter.errors import RecordError
 from inerter.files.common.folder import WriteMode, open_results
-from inerter.files.common.toml import tables_of
 from inerter.files.identification.loading import identification_of
-from inerter.files.identification.running import IdentificationResult, read, run_identification
+from inerter.files.identification.running import read, run_identification
 from inerter.formatting import typeset
 from inerter.report.identification import RESULT_NAMES, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import unreliability_reason
-from inerter.report.identified_values import elements_block, value_and_interval
+from inerter.report.identified_values import device_tables, value_and_interval
 
 Body = Mapping[str, Any]
 
@@ -54,10 +53,5 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
         "shown": {name: [*map(typeset, value_and_interval(found, name))] for name in found.fit.parameters},
         "offers": further_offers(found),
         "asked": {"model": body.get("model"), "config": body.get("config") or {}},
-        "device": _device(found),
+        "device": device_tables(found) if found.explains else None,  # withheld values are not handed on
     }
-
-
-def _device(found: IdentificationResult) -> dict[str, Any] | None:
-    """The device as tables of a study document; None where its values are withheld: then there is none to hand on."""
-    return tables_of(elements_block(found).encode(), PATH, "a device") if found.explains else None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Mapping
 from dataclasses import replace
@@ -25,7 +24,7 @@ from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.sweeps import number_of
 from inerter.networks.elements import Element
-from inerter.report.study_data import as_text
+from inerter.report.study_data import as_data
 from inerter.report.writing import write_figures_and_report
 from inerter.units import parse_quantity
 
@@ -92,7 +91,7 @@ def _describe_sweep(study: Study, swept: Sweep) -> dict[str, Any]:
 
 def _as_data(result: StudyResult) -> Any:
     """Results as `inerter run --json` prints them, with values as texts, and digests of the problems they solve."""
-    data, study = json.loads("".join(as_text(result))), result.study
+    data, study = as_data(result), result.study
     for design in data["designs"]:
         here = study.at([design[sweep.label] for sweep in study.sweeps])
         design["texts"] = texts_of(here, design["parameters"])

@@ -67,15 +67,22 @@ def elements_block(found: IdentificationResult) -> str:
             f"# unreliable estimates ({found.fit.status.kind}): values withheld"
         )
     rows, expression = _element_rows(found)
+    texts = {name: f'"{value}"' for name, (value, _) in rows.items()}
     keys = max(len(name) for name in rows)
-    values = max(len(value) for value, _ in rows.values())
+    values = max(map(len, texts.values()))
     lines = [f"# {found.name}, identified from {_format_sources(found)}"]
     if QUADRATIC_DAMPING in found.fit.parameters:
         value, interval = value_and_interval(found, QUADRATIC_DAMPING)
         lines.append(f"# without its quadratic damping, {value} ({interval}), which no element has")
     lines.append("[elements]")
-    lines += [f"{name:<{keys}} = {value:<{values}}  # {remark}" for name, (value, remark) in rows.items()]
+    lines += [f"{name:<{keys}} = {texts[name]:<{values}}  # {remark}" for name, (_, remark) in rows.items()]
     return "\n".join([*lines, "", "[layouts]", f'device = "{expression}"'])
+
+
+def device_tables(found: IdentificationResult) -> dict[str, dict[str, str]]:
+    """Tables of the sections of `elements_block`, of a reliable fit."""
+    rows, expression = _element_rows(found)
+    return {"elements": {name: value for name, (value, _) in rows.items()}, "layouts": {"device": expression}}
 
 
 def _format_sources(found: IdentificationResult) -> str:
@@ -107,7 +114,7 @@ def _possible_names(element: Element) -> Iterator[str]:
 def _value_and_remark(found: IdentificationResult, free: Element, best: Element) -> tuple[str, str]:
     number = best.value
     assert not isinstance(number, Free | Tied)
-    value = f'"{format_quantity(number, best.unit, _MOST_DIGITS)}"'
+    value = format_quantity(number, best.unit, _MOST_DIGITS)
     if not isinstance(free.value, Free):
         return value, "as given"
     name = str(free.value.name)

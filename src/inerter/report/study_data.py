@@ -25,15 +25,14 @@ _DIGITS = 5  # of a value, at most, without a standard error
 _JSON = {"improvement_error": "improvement_error_percent"}
 
 
+def as_data(result: StudyResult) -> dict[str, Any]:
+    """All results as data for JSON."""
+    return _with_designs(result, list(_designs(result)))
+
+
 def as_text(result: StudyResult) -> Iterator[str]:
     """All results as JSON, in pieces, so that a list of a million designs is never in memory."""
-    further = {task.key: [one.to_json() for one in own] for task, own in by_task(result.answers).items()}
-    swept = [
-        {"name": place, "words": result.data[place].attrs["long_name"], "unit": result.data[place].attrs["units"]}
-        for place in swept_places(result.data)
-    ]
-    verdicts = {} if swept else {"verdicts": list(_verdicts(result))}
-    whole = json.dumps({**result.data.attrs, "swept": swept, **verdicts, "designs": [None], **further}, indent=2)
+    whole = json.dumps(_with_designs(result, [None]), indent=2)
     before, _, after = whole.partition("\n    null")  # no text of JSON has the end of a line in it
     separator = "\n"
     yield before
@@ -41,6 +40,16 @@ def as_text(result: StudyResult) -> Iterator[str]:
         yield separator + indent(json.dumps(design, indent=2), "    ")
         separator = ",\n"
     yield f"{after}\n"
+
+
+def _with_designs(result: StudyResult, designs: Sequence[Any]) -> dict[str, Any]:
+    further = {task.key: [one.to_json() for one in own] for task, own in by_task(result.answers).items()}
+    swept = [
+        {"name": place, "words": result.data[place].attrs["long_name"], "unit": result.data[place].attrs["units"]}
+        for place in swept_places(result.data)
+    ]
+    verdicts = {} if swept else {"verdicts": list(_verdicts(result))}
+    return {**result.data.attrs, "swept": swept, **verdicts, "designs": designs, **further}
 
 
 def _verdicts(result: StudyResult) -> Iterator[dict[str, Any]]:

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import xarray as xr
 
-from inerter.errors import StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study.running import StudyResult, result_names, run_study
 from inerter.kernels.cache import is_kept
@@ -84,11 +83,8 @@ def reproduce(
     With `force`, the results that the folder holds stay until these are whole. `finish` may add files to the results,
     in the folder that it is given.
 
-    Raises `StudyError` if `folder` holds something and neither `resume` nor `force` is given, or for an unknown part.
+    Raises `StudyError` if `folder` holds something and neither `resume` nor `force` is given.
     """
-    unknown = [part for part in only if part not in PARTS]
-    if unknown:
-        raise StudyError(f"Unknown part {unknown[0]!r}; available: {', '.join(PARTS)}.")
     wanted = set(only or PARTS) | (set(_CLAIMS) if not only or "claims" in only else set())
     drawn = [figure for figure in ("figure13", "figure14") if figure in wanted]
     needed = linear.STUDIES if "linear" in wanted else ("figure11",) if drawn else ()

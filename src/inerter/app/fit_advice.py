@@ -10,7 +10,7 @@ from inerter.files.identification.sections import CHOOSE
 from inerter.identification.fit import Explanation
 from inerter.identification.models import MODELS
 from inerter.records.remedy import Action, Remedy
-from inerter.report.identification_tables import LITTLE, MOST_EXPLANATIONS
+from inerter.report.identification_tables import likely_explanations
 from inerter.report.options import as_options
 
 Offer = dict[str, Any]
@@ -18,8 +18,7 @@ Offer = dict[str, Any]
 
 def causes(found: IdentificationResult) -> list[dict[str, Any]]:
     """Possible causes of a misfit, most likely first: sentence, share explained, remedy in words, and offers."""
-    likely = [e for e in found.fit.explanations if e.explained >= LITTLE]
-    return [_cause(e) for e in likely[:MOST_EXPLANATIONS]] if not found.explains else []
+    return [] if found.explains else [_cause(e) for e in likely_explanations(found)]
 
 
 def further_offers(found: IdentificationResult) -> list[Offer]:

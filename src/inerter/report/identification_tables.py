@@ -16,11 +16,12 @@ from inerter.formatting import (
     format_uncertain,
 )
 from inerter.identification.choice import Candidate
+from inerter.identification.fit import Explanation
 from inerter.report.identified_values import value_and_interval
 from inerter.report.options import as_options
 from inerter.table import Cell, Column, Row, Table, cells, columns
 
-LITTLE, MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
+_LITTLE, _MOST_EXPLANATIONS = 0.25, 3  # of the misfit: what explains less is not shown, nor are more
 
 
 def parameter_table(found: IdentificationResult) -> Table:
@@ -107,11 +108,15 @@ def format_variance_share(explained: float) -> str:
     return f"{format_decimals(100.0 * explained, decimals)} %"
 
 
+def likely_explanations(found: IdentificationResult) -> list[Explanation]:
+    """The first few hypotheses that explain a good part of the misfit, most likely first."""
+    return [e for e in found.fit.explanations if e.explained >= _LITTLE][:_MOST_EXPLANATIONS]
+
+
 def cause_texts(found: IdentificationResult) -> Iterator[tuple[str, str, str, str]]:
     """Possible causes of the residual, most likely first: sentence, share explained, estimates with it, and remedy."""
     units = {name: p.unit for name, p in found.fit.parameters.items()}
-    likely = [e for e in found.fit.explanations if e.explained >= LITTLE]
-    for e in likely[:MOST_EXPLANATIONS]:
+    for e in likely_explanations(found):
         values = ", ".join(
             f"{name} {format_quantity(value, units[name])} +- {format_quantity(error, units[name], 2)}"
             for name, (value, error) in e.estimates.items()

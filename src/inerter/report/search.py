@@ -26,7 +26,6 @@ from inerter.files.study.search_tables import (
     improvement,
     inerters_table,
     networks_shown,
-    networks_table,
     ranking_table,
     real_networks_table,
 )
@@ -180,6 +179,7 @@ def search_notes(found: StudySearch) -> list[str]:
 
 def search_data(found: StudySearch) -> dict[str, Any]:
     """The results as JSON holds them: every network, with the numbers of search.csv."""
+    tables = tables_of(found)
     data: dict[str, Any] = json_data(
         {
             "title": found.study.title,
@@ -193,8 +193,8 @@ def search_data(found: StudySearch) -> dict[str, Any]:
                 }
                 for one in found.searches
             ],
-            "networks": records(networks_table(found)),
-            **{Path(name).stem: records(table) for name, table in tables_of(found).items() if name != TABLE},
+            "networks": records(tables.pop(TABLE)),
+            **{Path(name).stem: records(table) for name, table in tables.items()},
         }
     )
     return data

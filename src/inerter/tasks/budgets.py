@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from math import nan
-from typing import TYPE_CHECKING
-
-import numpy as np
+from dataclasses import dataclass, field
+from math import isfinite, nan
+from typing import TYPE_CHECKING, Any
 
 from inerter.decision.of_study import decisive_method
-from inerter.errors import StatusKind
+from inerter.errors import Status, StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
@@ -69,14 +67,15 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             index = study.in_each(study.index(self.index))[condition_labels(study.conditions).index(self.condition)]
         found = element_break_even(design, baseline, index, self.parameter, study.method(method, threads))
         status = with_decisive_method(found.status, method)
-        return self._answer(study, found, status.kind.value, status.message)
+        crossings = [crossing.value for crossing in found.crossings]
+        return self._answer(study, status, crossings=crossings, **known_numbers(found))
 
     def failed_result(self, study: Study, message: str) -> BudgetAnswer:
         """Answer without numbers, with status `failed`."""
-        return self._answer(study, None, StatusKind.FAILED.value, message)
+        return self._answer(study, Status(StatusKind.FAILED, message))
 
-    def _answer(self, study: Study, found: BreakEven | None, status: str, message: str) -> BudgetAnswer:
-        element, known = study.elements[self.parameter], found is not None and bool(np.isfinite(found.value))
+    def _answer(self, study: Study, status: Status, **numbers: Any) -> BudgetAnswer:
+        element = study.elements[self.parameter]
         return BudgetAnswer(
             layout=self.layout,
             index=self.index,
@@ -85,13 +84,9 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
             unit=element.unit,
             method=decisive_method(study.evaluate),
             at_most=element.may_vanish,
-            value=found.value if found and known else None,
-            standard_error=number_or_none(found and found.standard_error),
-            interval=found.interval if found and np.isfinite(found.interval).all() else None,
-            error_bound=number_or_none(found and found.error_bound),
-            crossings=[crossing.value for crossing in found.crossings] if found else [],
-            status=status,
-            message=message,
+            status=status.kind.value,
+            message=status.message,
+            **numbers,
         )
 
 
@@ -107,11 +102,11 @@ class BudgetAnswer(Answer):
     unit: str
     method: str
     at_most: bool  # whether the layout is better below the value; above it otherwise
-    value: float | None
-    standard_error: float | None
-    interval: tuple[float, float] | None  # 95 % confidence interval
+    value: float | None = None
+    standard_error: float | None = None
+    interval: tuple[float, float] | None = None  # 95 % confidence interval
     error_bound: float | None = None  # largest relative error, sampling apart
-    crossings: list[float]  # all values at which both are equally good
+    crossings: list[float] = field(default_factory=list)  # all values at which both are equally good
 
 
 class Budgets(Task[BudgetAnswer]):
@@ -217,6 +212,14 @@ def element_break_even(design: Vehicle, baseline: Vehicle, index: IndexLike, ele
         if not present.may_vanish and isinstance(present.value, float):
             bounds = present.value / _DOWN, present.value * _UP
     return break_even(design, baseline, index, parameter=element, method=method, bounds=bounds)
+
+
+def known_numbers(found: BreakEven) -> dict[str, Any]:
+    """Break-even value with its errors for JSON; None for each that is not known."""
+    return {
+        **{name: number_or_none(getattr(found, name)) for name in ("value", "standard_error", "error_bound")},
+        "interval": found.interval if all(map(isfinite, found.interval)) else None,
+    }
 
 
 def _in_condition(label: str) -> str:

@@ -28,7 +28,7 @@ from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.optimisation.budget import BreakEven, better_clause
 from inerter.statements import Severity
 from inerter.systems.piecewise import piecewise
-from inerter.tasks.budgets import element_break_even, range_text
+from inerter.tasks.budgets import element_break_even, known_numbers, range_text
 from inerter.uncertainty.tolerance import tolerance_analysis
 from inerter.validation import number_or_none
 from inerter.vehicle.replace_values import with_elements
@@ -322,10 +322,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
         is_present=trial.is_present,
         unit=found.unit,
         method=method,
-        value=found.value if known else None,
-        standard_error=number_or_none(found.standard_error),
-        interval=found.interval if all(map(isfinite, found.interval)) else None,
-        error_bound=number_or_none(found.error_bound),
+        **known_numbers(found),
         in_conditions=each,
         status=found.status.kind.value,
         message=message,

@@ -146,8 +146,7 @@ def run_study(
     """
     check_study(study)
     with _into(study, folder, resume, force) as results, worker_pool(jobs, executor) as pool:
-        gathered, done, computed = _compute_outcomes(study, results, pool, progress, compiling)
-        answers = tuple(done[part] for part in parts_of(study))
+        gathered, answers, computed = _compute_outcomes(study, results, pool, progress, compiling)
         data = gathered.dataset()
         write_study(study, results.draft)
         for task, own in by_task(answers).items():
@@ -157,7 +156,7 @@ def run_study(
         write_summary(results.draft / SUMMARY, study, data)
         write_netcdf(results.draft / DATASET, data)
         results.publish()
-        kinds = {*gathered.kinds, *(one.status for one in done.values())}
+        kinds = {*gathered.kinds, *(one.status for one in answers)}
         failed = StatusKind.FAILED in kinds
         result = StudyResult(results.folder, study, data, computed, answers, failed)
         finish(result, results.draft)
@@ -194,8 +193,8 @@ def _into(study: Study, folder: str | Path | Results, resume: bool, force: bool)
 
 def _compute_outcomes(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: ProgressCallback | None
-) -> tuple[DatasetBuilder, _Done, int]:
-    """All cases and parts of tasks, and how many cases were not in the journal."""
+) -> tuple[DatasetBuilder, tuple[Answer, ...], int]:
+    """All cases, the answers of tasks in the order of their parts, and how many cases were not in the journal."""
     journal = journals.journal_of(study, results.place / journals.NAME)
     found = DatasetBuilder(study)
     done, known = _read(journal, found) if results.resume else ({}, {})
@@ -224,7 +223,7 @@ def _compute_outcomes(
                 _enter(result, found, done)
             tell(ready[-1])
         check_all_results(total - len(found.pending()) - len(set(parts) - set(done)), total)
-    return found, done, len(pending)
+    return found, tuple(done[part] for part in parts), len(pending)
 
 
 def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, KnownSearches]:

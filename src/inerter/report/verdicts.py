@@ -8,8 +8,6 @@ from functools import partial
 from math import hypot, isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
-import scipy
-
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import decisive_method, nonlinear_elements, remedy_of
@@ -30,6 +28,7 @@ from inerter.figures.labels import (
 from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, format_quantity
+from inerter.methods.averages import interval_of
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.methods.ties import ACCURACY
@@ -189,9 +188,9 @@ def _margin(row: xr.Dataset, first: xr.Dataset, second: xr.Dataset) -> float:
     """Difference of two values within their 95 % confidence interval; zero without uncertainties."""
     if "standard_error" not in row or "realisations" not in row:
         return 0.0
-    freedom = max(min(int(one["realisations"]) for one in (first, second)) - 1, 1)
-    margin = scipy.special.stdtrit(freedom, 0.975) * hypot(*(_sampling_error(row, one) for one in (first, second)))
-    return 0.0 if isnan(margin) else float(margin)
+    count = max(min(int(one["realisations"]) for one in (first, second)), 2)
+    _, margin = interval_of(0.0, hypot(*(_sampling_error(row, one) for one in (first, second))), count)
+    return 0.0 if isnan(margin) else margin
 
 
 def _sampling_error(row: xr.Dataset, design: xr.Dataset) -> float:

@@ -22,7 +22,6 @@ from inerter.files.common.codec import (
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import list_schema, quantity_schema, words_schema
-from inerter.files.common.sizes import check_size
 from inerter.files.common.suggest import nearest
 from inerter.formatting import format_alike, format_number, format_range, in_words
 from inerter.networks.elements import NAME, Element, Free
@@ -34,6 +33,7 @@ from inerter.units import parse_quantity, quote_value, unit_in
 LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
 MOST_POINTS = 10_000_000
 _LONGEST_EXPRESSION = 500
+_LARGEST = 1e50  # of a quantity in SI units, and the inverse of the smallest
 _WIDEST = 1e24  # ratio of the bounds of a free value
 _MOST_BRACKETS = 50  # far from the depth at which Python's stack ends
 TEXT_SCHEMA: dict[str, Any] = {"type": "string", "minLength": 1, "maxLength": 200}
@@ -196,7 +196,7 @@ def not_negative(unit: str) -> QuantityCodec:
 
 def not_negative_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is zero or more."""
-    value = check_size(parse_quantity(text, unit), text, unit)
+    value = _check_size(parse_quantity(text, unit), text, unit)
     if value < 0.0:
         raise invalid_entry(text, fault="negative", expected=f"0 {unit} or more")
     return value
@@ -204,9 +204,17 @@ def not_negative_in(text: Any, unit: str) -> float:
 
 def positive_in(text: Any, unit: str) -> float:
     """A quantity of `unit` that is greater than zero."""
-    value = check_size(parse_quantity(text, unit), text, unit)
+    value = _check_size(parse_quantity(text, unit), text, unit)
     if value <= 0.0:
         raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}")
+    return value
+
+
+def _check_size(value: float, text: Any, unit: str) -> float:
+    """`value`; raises `EntryError` for a size whose squares and products leave the range of numbers."""
+    if value and not 1.0 / _LARGEST <= abs(value) <= _LARGEST:
+        expected = f"a size from {format_range(1.0 / _LARGEST, _LARGEST, unit)}"
+        raise invalid_entry(text, fault="a size that nothing has", expected=expected, hint="Check the unit.")
     return value
 
 
@@ -267,7 +275,7 @@ SWEPT = Scalar(quantity_text, quantity_schema)
 
 def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
     unit, value = parse_element(text, known)
-    check_size(value, text, unit)
+    _check_size(value, text, unit)
     if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
         hint = "To leave the element out, drop its branch from the layouts."
         raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}", hint=hint)

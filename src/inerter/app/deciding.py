@@ -183,7 +183,7 @@ class _DesignComparison:
             unit=study.unit(one.index),
             value=estimate.value,
             status=with_decisive_method(estimate.status, self.method),
-            standard_error=nan if estimate.standard_error is None else estimate.standard_error,
+            standard_error=estimate.quantity.error,
             error_bound=estimate.error_bound,
             improvement=improvement_of(two),
         )

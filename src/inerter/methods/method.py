@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.deprecation import RenamedAttribute, adopt_renamed
 from inerter.errors import OK, DesignError, ErrorSource, PerformanceIndexError, Status
-from inerter.formatting import format_quantity_in_table, typeset
+from inerter.formatting import typeset
 from inerter.indices.definition import ExcitedIndex, Index, IndexDefinition
 from inerter.kernels.prepare import prepare_on
 from inerter.methods.composite_index import (
@@ -33,6 +33,7 @@ from inerter.notebook import shown_by
 from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
+from inerter.table import Quantity
 from inerter.vehicle.mechanism import check_known
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 from inerter.work.pool import Pool
@@ -86,10 +87,15 @@ class Estimate:
         """Relative effects, with their signs, of the errors of the road that all values on it share, by source."""
         return {source.name: source.shared for source in self.error_sources if any(source.shared)}
 
-    def __str__(self) -> str:
+    @property
+    def quantity(self) -> Quantity:
+        """The value with its unit and its errors, nan for those that the method does not state."""
         error = nan if self.standard_error is None else self.standard_error
-        value = format_quantity_in_table(self.value, self.unit, error=error, bound=self.error_bound)
-        return typeset(value) if self.status.ok else f"{typeset(value)} ({self.status})"
+        return Quantity(self.value, self.unit, error, self.error_bound)
+
+    def __str__(self) -> str:
+        value = typeset(str(self.quantity))
+        return value if self.status.ok else f"{value} ({self.status})"
 
 
 class FormerMethodNames:

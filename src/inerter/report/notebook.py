@@ -28,7 +28,7 @@ Fact = tuple[str, object]
 
 def estimate_html(found: Estimate) -> str:
     """Value with its errors, and what the method left out."""
-    facts: list[Fact] = [("value", _estimate_quantity(found))]
+    facts: list[Fact] = [("value", found.quantity)]
     if found.interval is not None:
         facts.append(("95 % interval", _interval(found.value, found.interval, found.unit)))
     if found.error_sources:
@@ -39,8 +39,8 @@ def estimate_html(found: Estimate) -> str:
 def comparison_html(found: Comparison) -> str:
     """Both values, and the difference in words."""
     facts = [
-        ("first", _estimate_quantity(found.first)),
-        ("second", _estimate_quantity(found.second)),
+        ("first", found.first.quantity),
+        ("second", found.second.quantity),
         ("difference", str(found)),
     ]
     return _html(_facts("Comparison", facts), found.status)
@@ -48,7 +48,7 @@ def comparison_html(found: Comparison) -> str:
 
 def optimum_html(found: Optimum) -> str:
     """Best value, its parameters with active bounds, active limits, and how many starts agree."""
-    facts: list[Fact] = [("value", _estimate_quantity(found.estimate)), *_parameters(found.parameters, found.design)]
+    facts: list[Fact] = [("value", found.estimate.quantity), *_parameters(found.parameters, found.design)]
     facts += [(f"{bound} bound", name) for name, bound in found.active_bounds.items()]
     facts += [("limit", label) for label in found.active_limits]
     facts.append(("starts that agree", f"{found.n_converged} of {found.n_starts}"))
@@ -67,7 +67,7 @@ def break_even_html(found: BreakEven) -> str:
 
 def tolerance_html(found: Tolerance) -> str:
     """Distribution of an index, and the part of each value in its variance."""
-    nominal = _estimate_quantity(found.nominal)
+    nominal = found.nominal.quantity
     quantile = found.quantile_estimate(0.95)
     facts: list[Fact] = [("nominal", nominal)]
     facts.append(("mean", nominal.beside(found.mean, found.standard_errors["mean"])))
@@ -86,7 +86,7 @@ def front_html(found: ParetoFront) -> str:
         Row(
             cells(
                 str(number + 1),
-                *map(_estimate_quantity, estimates),
+                *(one.quantity for one in estimates),
                 *(Quantity(parameters[name], units.get(name, "")) for name in names),
             ),
             strong=number == found.knee,
@@ -148,11 +148,6 @@ def trajectory_html(run: Trajectory) -> str:
 
 def _facts(caption: str, facts: Sequence[Fact]) -> Table:
     return Table(caption, columns("what", "value"), [Row(cells(name, content)) for name, content in facts])  # type: ignore[arg-type]
-
-
-def _estimate_quantity(found: Estimate) -> Quantity:
-    error = float("nan") if found.standard_error is None else found.standard_error
-    return Quantity(found.value, found.unit, error=error, bound=found.error_bound)
 
 
 def _interval(value: float, ends: tuple[float, float], unit: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -320,8 +319,8 @@ def limit_results(
         active = [one for one in own if one.active]
         cost = float(sum(one.sensitivity for one in active))
         part = ", ".join(filter(None, (part_words(vehicle, output_of(worst.limit.of)), there)))
-        error = math.nan if worst.estimate.standard_error is None else worst.estimate.standard_error
-        found.append((worst.value, bool(active), cost, part, error, worst.estimate.error_bound))
+        errors = worst.estimate.quantity.error, worst.estimate.error_bound
+        found.append((worst.value, bool(active), cost, part, *errors))
     return found
 
 

@@ -13,6 +13,7 @@ from scipy.stats import chi2
 import inerter as it
 from inerter.identification.experiment import experiment_of, load_cell_output
 from inerter.identification.initial_estimate import chain_of, guess_of
+from inerter.identification.models import MODELS
 from inerter.identification.noise import noise_whitening
 from inerter.identification.parameter_space import space_of
 from inerter.identification.residual_tests import portmanteau
@@ -228,6 +229,15 @@ def test_requests_that_cannot_be(change, sentence):
         it.identify(given_.pop("records"), given_.pop("model"), **given_)
 
 
+@pytest.mark.parametrize("model", ["friction", "ball-screw"])
+def test_a_force_of_noise_alone_is_guessed_from_its_largest(model: str) -> None:
+    """A load cell that is not connected: nothing of its low-passed force exceeds the noise."""
+    record = fit_test(duration=1.0)
+    noise = 20.0 * np.random.default_rng(0).standard_normal(record.time.size)
+    guess = guess_of(chain_of(it.Rig(MODELS[model]).device), [experiment_of(record.with_notes(force=noise))])
+    assert all(np.isfinite(value) and np.isfinite(width) for value, width in guess.values())
+
+
 def test_constant_channels_are_refused():
     record = fit_test(duration=1.0)
     for name in ("displacement", "force"):
@@ -242,3 +252,20 @@ def test_a_load_cell_that_is_far_faster_than_the_samples_is_refused():
     refused = pytest.raises(it.InerterError, match=r"are 1 s apart, .* of 1000 Hz is too fast .* unit of its times")
     with pytest.warns(UserWarning, match="implausibly slow"), refused:
         it.identify([record.with_notes(time=1e3 * record.time, force_bandwidth=1e3)], BALL_SCREW)
+
+
+SENSORS = {
+    "displacement_noise": (
+        1.0,
+        r"displacement of .* is stated as 1 m r\.m\.s\., more than the displacement itself, .*unit",
+    ),
+    "force_noise": (1e5, r"noise of the force of .* is stated as .* r\.m\.s\., more than the force itself, .*unit"),
+    "force_bandwidth": (1e-300, r"A load cell of 1e-300 Hz reads nothing of .*, which lasts 1 s\. Check the unit"),
+}
+
+
+@pytest.mark.parametrize("name", SENSORS)
+def test_stated_sensors_that_leave_nothing_to_fit_are_refused(name):
+    wrong, sentence = SENSORS[name]
+    with pytest.raises(it.InerterError, match=sentence):
+        it.identify([fit_test(duration=1.0).with_notes(**{name: wrong})], BALL_SCREW)

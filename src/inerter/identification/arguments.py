@@ -13,7 +13,7 @@ from inerter.errors import IdentificationError
 from inerter.formatting import format_quantity
 from inerter.identification.models import MODELS
 from inerter.networks.elements import Network
-from inerter.records.inspection import PLAUSIBLE, questionable_units
+from inerter.records.inspection import PLAUSIBLE, extreme_sizes, questionable_units
 from inerter.records.record import Record
 
 _FEWEST = 4  # samples of two records at the same times that show that they are the same
@@ -25,7 +25,8 @@ def checked_records(records: object) -> list[Record]:
     """The records as a list.
 
     Raises `IdentificationError` unless they are one record or several, of different samples: samples that count twice
-    would make intervals narrower than they are. Nor may displacement and force be in the place of each other.
+    would make intervals narrower than they are. Nor may a channel have a size that no sensor reads, or displacement and
+    force be in the place of each other.
     """
     given = [records] if isinstance(records, Record) else list(records) if isinstance(records, Sequence) else []
     if not given or not all(isinstance(r, Record) for r in given):
@@ -34,6 +35,8 @@ def checked_records(records: object) -> list[Record]:
             f"{records!r}."
         )
     for record in given:
+        for finding in extreme_sizes(record):
+            raise IdentificationError(f"{record.source}: {finding.sentence}")
         _check_columns(record)
     for (i, one), (j, other) in combinations(enumerate(given, 1), 2):
         if share_samples(one, other):

@@ -13,7 +13,7 @@ from inerter.errors import IdentificationError, InerterError
 from inerter.formatting import format_alike, format_quantity
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.records.dropouts import MAD
-from inerter.records.record import Record
+from inerter.records.record import CHANNELS, Record
 from inerter.records.saturation import saturated_samples
 from inerter.records.smoothing import Motion, interpolate, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
@@ -33,6 +33,7 @@ _END, _SHORT = 16, 0.15  # samples next to an end, at least, where filter and sp
 # continuation; but of a short record not more than a share of it, as its validation part is a fifth
 _FEWEST = 50  # samples that a fit requires
 _FASTEST_CELL = 600.0  # of the sampling rate: bandwidth of a load cell, whose equations are solved in steps of its own
+_SLOWEST_CELL = 1e-2  # periods of its bandwidth in a record, at least
 _CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2 ...
 _RIGID_KNOTS, _MOST_RIGID_KNOTS = 160.0, 5  # ... and of a rigid device: cubics are worse for accelerations ...
@@ -165,8 +166,8 @@ def experiment_of(
     `lead` [s] at the start are not compared; by default none if the table starts from rest, else a tenth. A table that
     turns back at the first sample does not start from rest. The force of a `rigid` device follows its accelerations.
 
-    Raises `IdentificationError` for records that are too long or far slower than their load cell, or `RecordError` for
-    uneven ones.
+    Raises `IdentificationError` for records that are too long, or of which the stated sensors leave nothing to fit, or
+    `RecordError` for uneven ones.
     """
     if record.time.size > MOST_SAMPLES:
         raise IdentificationError(
@@ -179,12 +180,7 @@ def experiment_of(
         )
     if np.ptp(record.force) == 0.0:
         raise IdentificationError(f"The force of {record.source!r} is constant, so no parameter is identifiable.")
-    if record.force_bandwidth is not None and record.force_bandwidth * record.interval > _FASTEST_CELL:
-        raise IdentificationError(
-            f"The samples of {record.source!r} are {format_quantity(record.interval, 's')} apart, at which a load cell "
-            f"of {format_quantity(record.force_bandwidth, 'Hz')} is too fast to be computed. Check the unit of its "
-            "times, or leave out the bandwidth."
-        )
+    _check_sensors(record)
     motion = smooth_displacement(record, bandwidth)
     interval, count = record.interval, record.time.size
     try:
@@ -214,6 +210,30 @@ def experiment_of(
             f"Only {kept.sum()} samples of {record.source!r} can be used; a fit requires at least {_FEWEST}."
         )
     return Experiment(record, motion, kept, table, _noise(record), _information(record.force, kept), follows)
+
+
+def _check_sensors(record: Record) -> None:
+    """Raise `IdentificationError` for a stated bandwidth or noise with which nothing of the record is left to fit."""
+    cell = record.force_bandwidth
+    if cell is not None and cell * record.interval > _FASTEST_CELL:
+        raise IdentificationError(
+            f"The samples of {record.source!r} are {format_quantity(record.interval, 's')} apart, at which a load cell "
+            f"of {format_quantity(cell, 'Hz')} is too fast to be computed. Check the unit of its times, or leave out "
+            "the bandwidth."
+        )
+    if cell is not None and cell * record.duration < _SLOWEST_CELL:
+        raise IdentificationError(
+            f"A load cell of {format_quantity(cell, 'Hz')} reads nothing of {record.source!r}, which lasts "
+            f"{format_quantity(record.duration, 's')}. Check the unit of the bandwidth."
+        )
+    for role, noise in (("displacement", record.displacement_noise), ("force", record.force_noise)):
+        size = float(np.std(getattr(record, role)))
+        if noise is not None and noise > size:
+            unit = CHANNELS[role]
+            raise IdentificationError(
+                f"The noise of the {role} of {record.source!r} is stated as {format_quantity(noise, unit)} r.m.s., more "
+                f"than the {role} itself, {format_quantity(size, unit)} r.m.s. Check its unit."
+            )
 
 
 def _begins_at_rest(motion: Motion) -> bool:

@@ -171,9 +171,13 @@ def _regress(chain: Chain, experiment: Experiment) -> tuple[float, list[tuple[El
 
 
 def _contact(force: Matrix, h: float, noise: float) -> Matrix:
-    """The side on which the gap touches, -1 or 1, and a straight line between where there is no force."""
+    """The side on which the gap touches, -1 or 1, and a straight line between where there is no force.
+
+    The largest force touches, even if it is noise.
+    """
     calm = low_pass(force, h, min(_FORCE_BAND, 0.2 / h))
-    touching = np.abs(calm) > max(4.0 * noise, 0.01 * float(np.abs(calm).max()))
+    peak = float(np.abs(calm).max())
+    touching = np.abs(calm) >= min(max(4.0 * noise, 0.01 * peak), peak)
     n = np.arange(force.size)
     return np.interp(n, n[touching], np.sign(calm[touching]))
 

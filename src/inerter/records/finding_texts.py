@@ -326,6 +326,13 @@ class RecordFinding(FindingKind):
             f"be fitted. Check the connection of the sensor and the selection of the channel."
         ),
     )
+    EXTREME = (
+        "extreme",
+        lambda f: (
+            f"The {f.about} has values of {format_quantity(f.numbers['size'], CHANNELS[f.about])}, which no sensor "
+            f"reads, so no model can be fitted. Check its unit, and the file."
+        ),
+    )
     IMPLAUSIBLE = "implausible", _implausible_amplitude_text
     TIME_SCALE = "time-scale", _time_scale_text
     SCALES = "inconsistent-scales", _inconsistent_scales_text

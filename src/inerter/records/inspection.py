@@ -30,6 +30,7 @@ HUM = (50.0, 60.0)  # Hz of the mains
 _FASTEST = 1e4  # m/s^2 r.m.s., above which times are more often in a wrong unit
 _INERTANCE, _LEAST = 1e3, 1e-3  # kg that give less than this share of the force: the same, of too slow a motion
 _CERTAIN, _SAME_SCALE = 0.03, 0.05  # rad, of the phase of a line; relative difference of two scales
+_READ = 1e-15, 1e15  # in SI units: sizes of what any sensor reads, of which powers are still numbers
 PLAUSIBLE = {"displacement": 1.0, "force": 1e6}  # in SI units; more is more often a wrong unit than a large rig
 
 
@@ -40,7 +41,7 @@ def findings(record: Record) -> list[Finding]:
     measured at a lower rate, joints between pieces, the amplitude, noise, resolution, clipping, offset and drift of the
     channels, swapped columns, mains hum and other spectral lines, the sign of the force and its delay.
     """
-    found = [
+    found = extreme_sizes(record) or [
         *_count(record),
         *_sampling(record),
         *_dropouts(record),
@@ -179,6 +180,18 @@ def _constant(record: Record) -> list[Finding]:
         values = getattr(record, role)
         if np.ptp(values) <= 1e-12 * np.max(np.abs(values)):
             result.append(Finding(RecordFinding.CONSTANT, Severity.ERROR, role, {"value": float(values[0])}))
+    return result
+
+
+def extreme_sizes(record: Record) -> list[Finding]:
+    """Findings of channels of a size that no sensor reads, to which no model can be fitted."""
+    result = []
+    for role, values in record.channels().items():
+        size = float(np.max(np.abs(values)))
+        if size <= _READ[1]:
+            size = record.interval if role == "time" else 0.5 * float(np.ptp(values))
+        if size > 0.0 and not _READ[0] <= size <= _READ[1]:
+            result.append(Finding(RecordFinding.EXTREME, Severity.ERROR, role, {"size": size}))
     return result
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -18,6 +19,7 @@ from inerter.validation import is_number
 
 Matrix = NDArray[np.float64]
 CHANNELS = {"time": "s", "displacement": "m", "force": "N", "velocity": "m/s", "acceleration": "m/s^2"}
+REQUIRED = ("time", "displacement", "force")
 UNIFORM = 1e-3  # of an interval: times that stray less from an even spacing count as even
 
 
@@ -57,14 +59,12 @@ class Record:
     further: Mapping[str, Matrix] = field(default_factory=dict)  # (n,) each: other channels by name, as a temperature
 
     def __post_init__(self) -> None:
+        self._check_types()
         size = None
-        for name, values in self.channels().items():
-            array = np.asarray(values)
-            if array.ndim != 1 or array.dtype.kind not in "fiu":
-                raise RecordError(
-                    f"The {name} of a record must be a vector of real numbers, got {array.dtype}, shape {array.shape}."
-                )
-            array = np.ascontiguousarray(array, dtype=float)
+        for name in CHANNELS:
+            if getattr(self, name) is None and name not in REQUIRED:
+                continue
+            array = _vector(f"The {name} of a record", getattr(self, name))
             size = array.size if size is None else size
             if array.size != size:
                 raise RecordError(
@@ -80,10 +80,11 @@ class Record:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         for name, values in self.further.items():
-            if np.shape(values) != self.time.shape or not np.all(np.isfinite(values)):
+            array = _vector(f"The further channel {name!r}", values)
+            if array.shape != self.time.shape or not np.all(np.isfinite(array)):
                 raise RecordError(
                     f"The further channel {name!r} must have {self.time.size} finite samples like the time; got "
-                    f"shape {np.shape(values)}."
+                    f"shape {array.shape}."
                 )
         if self.time.size < 4:
             cut = "" if self.time.size else " Is the file complete?"
@@ -107,6 +108,18 @@ class Record:
             value = getattr(self, name)
             if value is not None and (not is_number(value) or value <= 0.0):
                 raise RecordError(f"The {name} of a record must be a positive number, got {value!r}.")
+
+    def _check_types(self) -> None:
+        """Raise `RecordError` for fields other than channels that are of another type than theirs."""
+        words = isinstance(self.notes, (tuple, list)) and all(isinstance(note, str) for note in self.notes)
+        for name, fits, wanted in (
+            ("source", isinstance(self.source, str), "a string"),
+            ("notes", words, "a tuple of strings"),
+            ("meta", isinstance(self.meta, Mapping), "a mapping"),
+            ("further", isinstance(self.further, Mapping), "a mapping of names to vectors"),
+        ):
+            if not fits:
+                raise RecordError(f"The {name} of a record must be {wanted}, got {reprlib.repr(getattr(self, name))}.")
 
     def channels(self) -> dict[str, Matrix]:
         """All channels that there are, by name."""
@@ -181,3 +194,20 @@ class Record:
             self.samples(slice(0, at), f"Estimation data: before {format_quantity(cut, 's', 6)}."),
             self.samples(slice(at, None), f"Validation data: after {format_quantity(cut, 's', 6)}."),
         )
+
+
+def _vector(what: str, values: object) -> Matrix:
+    """The values as a vector, with nan where a masked array has none.
+
+    Raises `RecordError` unless they are a vector of real numbers.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:  # lists of different lengths
+        array = np.asarray(None)
+    if array.ndim != 1 or array.dtype.kind not in "fiu":
+        got = reprlib.repr(values) if array.ndim == 0 else f"{array.dtype}, shape {array.shape}"
+        raise RecordError(f"{what} must be a vector of real numbers, got {got}.")
+    missing = values.mask if isinstance(values, np.ma.MaskedArray) else False
+    whole: Matrix = np.ascontiguousarray(array, dtype=np.float64)
+    return np.where(missing, np.nan, whole) if np.any(missing) else whole

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from quick_fits import quick_fit
@@ -98,3 +100,21 @@ def test_a_true_model_of_a_short_record_is_within_noise_up_to_its_ends(seed: int
     record = it.Record(time, x + 1e-7 * random.standard_normal(97), read, force_noise=noise)
     solution = quick_fit(record, MODELS["ideal-viscous"], {"b": 100.0, "c": 200.0})
     assert solution.misfit.is_noise_limited, solution.misfit
+
+
+def test_the_motion_of_a_delay_is_computed_once() -> None:
+    """A fit without the bandwidth of the load cell has one delay in most of its simulations."""
+    time = np.arange(600) / 200.0
+    record = it.Record(time, 1e-3 * np.sin(9.0 * time), -8.0 * np.sin(9.0 * time))
+    e, alike = (experiment_of(record, rigid=True) for _ in range(2))
+    other = replace(e, kept=~e.kept)
+    late, again = e.with_delay(5e-3), other.with_delay(5e-3)
+    assert again.table_in(32) is late.table_in(32)
+    assert np.array_equal(again.kept, ~e.kept)
+    fresh = alike.with_delay(5e-3).with_delay(5e-3)  # delayed twice
+    assert np.array_equal(late.with_delay(5e-3).motion.displacement, fresh.motion.displacement)
+    assert not np.array_equal(late.motion.displacement, fresh.motion.displacement)
+    for n in range(20):
+        e.with_delay(1e-4 * n)
+    assert len(e.delayed) <= 6
+    assert not e.with_motion(e.motion.displacement, e.motion.velocity).delayed

@@ -34,6 +34,7 @@ _END, _SHORT = 16, 0.15  # samples next to an end, at least, where filter and sp
 _FEWEST = 50  # samples that a fit requires
 _FASTEST_CELL = 600.0  # of the sampling rate: bandwidth of a load cell, whose equations are solved in steps of its own
 _SLOWEST_CELL = 1e-2  # periods of its bandwidth in a record, at least
+_DELAYS, _DELAYED_SAMPLES = 6, 100_000  # of which the motion is kept, as for the differences of a fit; at most
 _CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2 ...
 _RIGID_KNOTS, _MOST_RIGID_KNOTS = 160.0, 5  # ... and of a rigid device: cubics are worse for accelerations ...
@@ -73,11 +74,12 @@ class Experiment:
     information: Matrix  # (samples,) cumulative share of the squared force of all samples kept
     rigid: bool = False  # whether the force follows the accelerations of the table, as that of a rigid device
     finer: dict[int, InputTable] = field(default_factory=dict)  # the motion in so many steps an interval
+    delayed: dict[float, Experiment] = field(default_factory=dict)  # by the delay, those that were used last
     tally: SimulationCount = field(default_factory=SimulationCount)
 
     def __getstate__(self) -> dict[str, object]:
         """State for another process, without tables, which are faster to compute than to send."""
-        return {**vars(self), "finer": {}}
+        return {**vars(self), "finer": {}, "delayed": {}}
 
     @property
     def size(self) -> int:
@@ -96,7 +98,7 @@ class Experiment:
         motion = replace(self.motion, displacement=displacement, velocity=velocity)
         value, slope = (displacement - displacement[0])[:, None], velocity[:, None]
         table = replace(self.table, value=value, slope=slope, value_before=value, slope_before=slope)
-        return replace(self, motion=motion, table=table, finer={})
+        return replace(self, motion=motion, table=table, finer={}, delayed={})
 
     def with_delay(self, delay: float | Matrix) -> Experiment:
         """The same record with the motion of the table delayed by `delay` [s], as a delayed force requires.
@@ -105,10 +107,17 @@ class Experiment:
 
         Before the first sample and after the last the table is assumed at rest.
         """
-        time = self.motion.time - self.motion.time[0] - delay
-        within = np.clip(time, 0.0, self.motion.time[-1] - self.motion.time[0])
-        height, velocity = _signal(self.motion, _knots_per_interval(self.motion)).sample(within)
-        return self.with_motion(height, np.where(time == within, velocity, 0.0))
+        known = self.delayed.get(delay) if isinstance(delay, float) else None
+        if known is None:
+            time = self.motion.time - self.motion.time[0] - delay
+            within = np.clip(time, 0.0, self.motion.time[-1] - self.motion.time[0])
+            height, velocity = _signal(self.motion, _knots_per_interval(self.motion)).sample(within)
+            known = self.with_motion(height, np.where(time == within, velocity, 0.0))
+        if isinstance(delay, float) and delay not in self.delayed:
+            self.delayed[delay] = known
+            for earlier in list(self.delayed)[: -max(min(_DELAYS, _DELAYED_SAMPLES // self.size), 1)]:
+                self.delayed.pop(earlier, None)
+        return replace(self, motion=known.motion, table=known.table, finer=known.finer, delayed={})
 
     def _first_velocity(self) -> Matrix:
         """The largest velocity of the table in its first period [m/s], since at the first sample it may turn back."""
@@ -231,8 +240,8 @@ def _check_sensors(record: Record) -> None:
         if noise is not None and noise > size:
             unit = CHANNELS[role]
             raise IdentificationError(
-                f"The noise of the {role} of {record.source!r} is stated as {format_quantity(noise, unit)} r.m.s., more "
-                f"than the {role} itself, {format_quantity(size, unit)} r.m.s. Check its unit."
+                f"The noise of the {role} of {record.source!r} is stated as {format_quantity(noise, unit)} r.m.s., "
+                f"more than the {role} itself, {format_quantity(size, unit)} r.m.s. Check its unit."
             )
 
 

@@ -109,3 +109,37 @@ def test_a_free_bar_keeps_the_half_that_feels_it():
     ]
     at = list(mechanism.free_values()).index("bar")
     assert gradient[at] * point[at] == pytest.approx((weighted[0] - weighted[1]) / 2e-4, rel=1e-5)
+
+
+BRANCHES = {
+    "spring and inerter": it.Spring(2e5) - it.Inerter(it.free(1.0, 900.0, name="b")),
+    "a tuned inerter": it.Spring(2e5) - (it.Inerter(it.free(1.0, 900.0, name="b")) | it.Spring(3e4)),
+    "a bridge": it.Bridge(
+        it.Spring(2e5), it.Inerter(it.free(1.0, 900.0, name="b")), it.Inerter(30.0), it.Spring(5e4), it.Spring(1e5)
+    ),
+}
+SPRINGS = [
+    it.Spring(it.free(1e4, 1e5, name=f"k{axle}")) | it.Damper(it.free(300.0, 2e4, name=f"c{axle}")) for axle in "fr"
+]
+
+
+@pytest.mark.parametrize(("name", "form"), [*zip(BRANCHES, (*FORMS[:2], None), strict=True)], ids=BRANCHES)
+def test_branches_without_a_damper_are_not_undamped_in_a_half(name, form):
+    """Left against right, such branches would oscillate for ever, unexcited: no norm would be sure in doubles."""
+    front, rear = (spring | BRANCHES[name] for spring in SPRINGS)
+    full = it.FullCar(
+        1400, 2400, 520, 45, 40, 22e4, 21e4, 1.2, 1.5, 1.5, 1.4, front, rear, anti_roll_front=it.Spring(8e3)
+    )
+    index = it.RideComfort(it.Road(5e-7, 20.0, form and form(1.0)))
+    definition = compiled(full.mechanism(), index)
+    bounds = np.log([(value.lower, value.upper) for value in full.free_values().values()])
+    points = np.exp(np.random.default_rng(5).uniform(*bounds.T, (60, len(bounds))))
+    assert definition.is_unsure(points).mean() < 0.1
+    point = points[0]
+    design = full.with_values(dict(zip(full.free_values(), point.tolist(), strict=True)))
+    expected = it.evaluate(replace(design.mechanism(), mirror=()), index, it.Norm()).value  # of both sides
+    assert definition.value_and_gradient(point)[0] == pytest.approx(expected, rel=2e-9)
+    for output in ("front_right_force", "rear_left_travel"):
+        both = it.RandomResponse({output: 1.0}, index.road)
+        of_whole = it.evaluate(replace(design.mechanism(), mirror=()), both, it.Norm())
+        assert it.evaluate(design, both, it.Norm()).value == pytest.approx(of_whole.value, rel=2e-9)

@@ -98,7 +98,7 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
             )
         networks[mount.name] = linear.network
         notes += linear.notes(mount.name)
-    graph = _expand(mechanism, networks, labels, tuple(notes))
+    graph = _expand(mechanism, networks, labels, tuple(notes), dict(mechanism.twins))
     if all(element.plain for element in mechanism.elements()):
         return graph
     return replace(graph, silent=_other_meanings(graph, full_graph(mechanism)))
@@ -106,7 +106,7 @@ def _linear_graph(mechanism: Mechanism) -> Graph:
 
 def full_graph(mechanism: Mechanism) -> Graph:
     """The graph with every element in it, friction and gaps included."""
-    return _expand(mechanism, *_collect_labels(mechanism, _to_piecewise), ())
+    return _expand(mechanism, *_collect_labels(mechanism, _to_piecewise), (), {})
 
 
 def _other_meanings(linear: Graph, full: Graph) -> frozenset[str]:
@@ -171,11 +171,18 @@ def _with_groups(network: Network, labels: Mapping[int, str]) -> Network:
 
 
 def _expand(
-    mechanism: Mechanism, networks: Mapping[str, Network], labels: Mapping[int, str], notes: tuple[str, ...]
+    mechanism: Mechanism,
+    networks: Mapping[str, Network],
+    labels: Mapping[int, str],
+    notes: tuple[str, ...],
+    twins: Mapping[str, str],
 ) -> Graph:
+    """The graph, in which `twins` have no inner nodes of their own: a difference of theirs would be a motion that
+    nothing excites, and that nothing may damp.
+    """
     coordinates = [c.name for c in mechanism.coordinates]
     roads = [r.name for r in mechanism.roads]
-    size = len(coordinates) + sum(_inner_nodes(network) for network in networks.values())
+    size = len(coordinates) + sum(_inner_nodes(network) for name, network in networks.items() if name not in twins)
     builder = _Builder([*coordinates])
     mounts: dict[str, Mount] = {}
     for mount in mechanism.mounts():
@@ -189,7 +196,7 @@ def _expand(
         for end, port in ports:
             for name, lever in port.items():
                 end[coordinates.index(name) if name in coordinates else size + roads.index(name)] = lever
-        carriers = builder.add(mount.name, networks[mount.name], upper, lower)
+        carriers = builder.mount(mount.name, networks[mount.name], (upper, lower), twins.get(mount.name))
         elongation = upper - lower
         mounts[mount.name] = Mount(elongation[:size], elongation[size:], carriers)
     branches = tuple(Branch(element, labels[id(element)], row[:size], row[size:]) for element, row in builder.branches)
@@ -202,6 +209,17 @@ class _Builder:
     nodes: list[str]
     branches: list[tuple[Element, Matrix]] = field(default_factory=list)
     groups: dict[str, tuple[Matrix, Carriers]] = field(default_factory=dict)
+    places: dict[str, list[Matrix]] = field(default_factory=dict)  # of each mount: its ends and its inner nodes
+    shared: list[Matrix] = field(default_factory=list)  # inner nodes of its twin that a mount will have
+
+    def mount(self, name: str, network: Network, ends: tuple[Matrix, Matrix], twin: str | None) -> Carriers:
+        """Add the network of a mount between its ends, in the places of its `twin` if it has one."""
+        upper, lower = ends
+        if twin is not None:
+            alike = np.array_equal(upper - lower, np.subtract(*self.places[twin][:2]))
+            upper, lower, *self.shared = (place if alike else 0.0 - place for place in self.places[twin])
+        self.places[name] = [upper, lower]
+        return self.add(name, network, upper, lower)
 
     def add(self, mount: str, network: Network, upper: Matrix, lower: Matrix) -> Carriers:
         """Add `network` between two ends; returns the branches whose forces add up to its force."""
@@ -229,9 +247,12 @@ class _Builder:
         raise TypeError(f"not a network: {network!r}")
 
     def _node(self, mount: str, number: int, size: int) -> Matrix:
+        if self.shared:
+            return self.shared.pop(0)
         end = np.zeros(size)
         end[len(self.nodes)] = 1.0
         self.nodes.append(f"{mount}.node{len(self.nodes)}_{number}")
+        self.places[mount].append(end)
         return end
 
 

@@ -81,7 +81,7 @@ def structure_of(mechanism: Mechanism) -> Structure | None:
         values += [c.inertia for c in mechanism.coordinates if not c.is_massless]
     forces = tuple([(force.name, _port(force.port)) for force in mechanism.forces])
     points = tuple([(point.name, _port(point.port), point.angle) for point in mechanism.points])
-    key = (struts, tyres, still, coordinates, ground, mechanism.roads, forces, points)
+    key = (struts, tyres, still, mechanism.twins, coordinates, ground, mechanism.roads, forces, points)
     return Structure(key, values, mechanism)
 
 

@@ -202,7 +202,7 @@ class PerformanceOutputs:
 class Mechanism:
     """Any number of coordinates, struts, tyres, roads and forces; `measures` are the outputs of each index.
 
-    `points` have outputs of their own. `mirror`, `still` and `ground_moves` are set by `symmetric_half` and
+    `points` have outputs of their own. `mirror`, `still`, `twins` and `ground_moves` are set by `symmetric_half` and
     `on_moving_ground`.
 
     Outputs by name: `<coordinate>_displacement`, `_velocity`, `_acceleration`, also of points; `<tyre>_load`,
@@ -230,6 +230,7 @@ class Mechanism:
     points: tuple[TrackedPoint, ...] = ()
     mirror: tuple[tuple[str, str], ...] = ()  # mirrored pairs of coordinates, or antisymmetric ones: see `half_of`
     still: tuple[Strut, ...] = ()  # struts at rest, which are left out: their outputs are zero
+    twins: tuple[tuple[str, str], ...] = ()  # a mount and the one before it that has its network and moves alike
     ground_moves: bool = False  # coordinates are relative to the ground then: see `on_moving_ground`
 
     _repr_svg_ = shown_by("inerter.figures.plots.network:design_svg")

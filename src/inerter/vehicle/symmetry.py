@@ -23,12 +23,12 @@ def symmetric_half(mechanism: Mechanism) -> Mechanism:
     """The symmetric half of a symmetric mechanism: an equivalent mechanism of fewer coordinates; else the mechanism.
 
     Of two mirrored coordinates the first has the mass of both, and antisymmetric ones are at rest. All mounts are kept,
-    mirrored ones in parallel, except those at rest; a removed coordinate becomes a `TrackedPoint` of its name. The
-    symmetry is verified: masses and mounts must be equal in the mirror image.
+    mirrored ones in parallel as `twins`, except those at rest; a removed coordinate becomes a `TrackedPoint` of its
+    name. The symmetry is verified: masses and mounts must be equal in the mirror image.
     """
     if not mechanism.mirror or not _is_its_image(mechanism):
         return mechanism
-    return _fold(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror})
+    return _with_twins(_fold(mechanism, {b: {a: 1.0} if a != b else {} for a, b in mechanism.mirror}))
 
 
 def antisymmetric_half(mechanism: Mechanism) -> Mechanism:
@@ -47,7 +47,7 @@ def antisymmetric_half(mechanism: Mechanism) -> Mechanism:
         one if one.road == own.road else replace(one, port={name: -lever for name, lever in one.port.items()})
         for one, own in zip(half.tyres, mechanism.tyres, strict=True)
     )
-    return replace(half, tyres=tuple(turned))
+    return _with_twins(replace(half, tyres=tuple(turned)))
 
 
 def _fold(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
@@ -75,6 +75,17 @@ def _fold(mechanism: Mechanism, follows: Mapping[str, Port]) -> Mechanism:
         mirror=(),
         still=(*mechanism.still, *still),
     )
+
+
+def _with_twins(half: Mechanism) -> Mechanism:
+    """The half with each mount that moves as an equal one before it, or opposite to that, named as its twin."""
+    first: dict[object, str] = {}
+    twins = []
+    for mount, signature in zip(half.mounts(), _mount_signatures(half, {}), strict=True):
+        of = first.setdefault(signature, mount.name)
+        if of != mount.name:
+            twins.append((mount.name, of))
+    return replace(half, twins=tuple(twins))
 
 
 def _is_its_image(mechanism: Mechanism) -> bool:

@@ -185,7 +185,7 @@ class _Ranking:
         """A network with real inerters; one without a result has its best ideal values."""
         assert self.study.real_inerters is not None
         shaft, friction = self.study.real_inerters.shaft, self.study.real_inerters.friction
-        ideal = next(network for network in one.result.ranking if network.layout == each.network)
+        ideal = one.ideal_network(each)
         before, after = real_gains(one, each)
 
         def change(element: Element) -> Network:

@@ -216,7 +216,6 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
         *(columns("Ideal gain", "Gain", "Retained") if compared else []),
         Column("Agreement", only_on_pages=True),
     ]
-    ideal = {found.layout: found.value for found in one.result.ranking}
     rows = []
     for each in one.real:
         if not each.network:
@@ -228,7 +227,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
         content = [
             each.network,
             *([each.method] if several else []),
-            Quantity(ideal[each.network], unit),
+            Quantity(one.ideal_network(each).value, unit),
             Quantity(each.kept, unit, bound=each.kept_bound),
             Quantity(each.value, unit, each.standard_error, each.error_bound),
             *(gains if compared else []),
@@ -246,8 +245,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
 
 def real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
     """Gains of a network on the baseline with ideal and with real inerters, in per cent."""
-    ideal = next(found.value for found in one.result.ranking if found.layout == each.network)
-    return improvement(ideal, one.baseline), one.real_gain(each)
+    return improvement(one.ideal_network(each).value, one.baseline), one.real_gain(each)
 
 
 def real_table(found: StudySearch) -> Table:
@@ -261,7 +259,7 @@ def real_table(found: StudySearch) -> Table:
     more = (*gains, *units, "at_bound", "starts", "agreed", "status")
     rows = []
     for one, each in results:
-        ideal = next(network.value for network in one.result.ranking if network.layout == each.network)
+        ideal = one.ideal_network(each).value
         rows.append(
             Row(
                 cells(

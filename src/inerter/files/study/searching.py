@@ -33,7 +33,7 @@ from inerter.methods.error_bounds import improvement_bound
 from inerter.network_search.front_results import NetworkFront
 from inerter.network_search.fronts import FrontPlan, front_waves
 from inerter.network_search.plan import SearchPlan
-from inerter.network_search.results import SearchResult, collect_results
+from inerter.network_search.results import FoundNetwork, SearchResult, collect_results
 from inerter.networks.parser import names
 from inerter.table import Table, csv_rows, csv_text
 from inerter.work.pool import Pool, worker_pool
@@ -53,6 +53,10 @@ class LayoutSearch:
     result: SearchResult
     baseline: float = nan
     real: tuple[RealResult, ...] = ()  # the best networks with real inerters, and the baseline by the same methods
+
+    def ideal_network(self, each: RealResult) -> FoundNetwork:
+        """The network of a result with real inerters, with ideal ones."""
+        return next(network for network in self.result.ranking if network.layout == each.network)
 
     def real_gain(self, each: RealResult) -> float:
         """Gain of a network with real inerters on the baseline, by the same method [%]; nan if it is not known."""

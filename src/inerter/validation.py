@@ -78,12 +78,19 @@ def is_whole(value: object, least: int = 0, most: float = math.inf) -> TypeGuard
     return isinstance(value, Integral) and not isinstance(value, bool) and least <= int(value) <= most
 
 
-def check_whole(error: type[InerterError], what: str, value: object, least: int = 0) -> int:
-    """The integer `value`; raises `error` unless it is one of at least `least`."""
-    if not is_whole(value, least):
+def check_whole(error: type[InerterError], what: str, value: object, least: int = 0, most: float = math.inf) -> int:
+    """The integer `value`; raises `error` unless it is one within these limits."""
+    if not is_whole(value, least, most):
         expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
+        expected = expected if most == math.inf else f"an integer from {least} to {most}"
         raise error(f"{what} must be {expected}, got {value!r}.")
     return int(value)
+
+
+def check_share(error: type[InerterError], what: str, value: object) -> None:
+    """Raise `error` unless `value` is a number between 0 and 1, neither of them."""
+    if not is_number(value) or not 0.0 < value < 1.0:
+        raise error(f"{what} must be between 0 and 1, got {value!r}.")
 
 
 def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P, R]]:

@@ -8,7 +8,7 @@ from typing import TypedDict
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import IdentificationError, UnitError
 from inerter.records.uncertain import Uncertain, parse_uncertain
-from inerter.validation import is_number
+from inerter.validation import check_whole, is_number
 
 POINTS = 128  # starts of a search
 
@@ -54,8 +54,7 @@ class FitOptions:
     def __post_init__(self) -> None:
         if not is_number(self.check) or not 0.0 <= self.check <= 0.6:
             raise IdentificationError(f"check: the validation fraction must be from 0 to 0.6, got {self.check!r}.")
-        if isinstance(self.starts, bool) or not isinstance(self.starts, int) or self.starts < 8:
-            raise IdentificationError(f"starts must be an integer of at least 8, got {self.starts!r}.")
+        check_whole(IdentificationError, "starts", self.starts, 8)
         for name in ("force_scale", "displacement_scale"):
             given = getattr(self, name)
             if given is not None:

@@ -16,7 +16,7 @@ from inerter.networks.elements import Network
 from inerter.records.record import Record
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import RunSettings, check_simulation, simulate
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, check_whole, is_number
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
@@ -95,8 +95,7 @@ class VirtualRig:
                 f"The offset of a load cell must be a number of N and its gain positive, got {self.force_offset!r} and "
                 f"{self.force_gain!r}. For a load cell that is positive in compression use `reversed`."
             )
-        if isinstance(self.seed, bool) or not isinstance(self.seed, int) or self.seed < 0:
-            raise IdentificationError(f"The seed must be a non-negative integer, got {self.seed!r}.")
+        check_whole(IdentificationError, "The seed", self.seed)
         Rig(self.device)
 
     def check(self, command: Signal, duration: float, start: float = 0.0) -> int:

@@ -41,7 +41,7 @@ from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import InputPath
 from inerter.systems.outputs import input_names
 from inerter.systems.piecewise import piecewise
-from inerter.validation import is_number
+from inerter.validation import check_share, check_whole, is_number
 from inerter.vehicle.mechanism import GROUND_ACCELERATION, Mechanism
 from inerter.vehicle.vehicle import Vehicle
 
@@ -118,10 +118,10 @@ class ApproximateLinear(FormerMethodNames):
                 raise PerformanceIndexError(
                     f"The {what} is excited by MultisineExcitation(...) or NoiseExcitation(...), got {given!r}."
                 )
-        _check_whole("The number of realisations", self.realisations, 2, _MOST)
-        _check_whole("A seed", self.seed, 0, 2**63)
-        if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
-            raise PerformanceIndexError(f"A relative error must lie between 0 and 1, got {self.relative_error!r}.")
+        check_whole(PerformanceIndexError, "The number of realisations", self.realisations, 2, _MOST)
+        check_whole(PerformanceIndexError, "The seed", self.seed, 0, 2**63)
+        if self.relative_error is not None:
+            check_share(PerformanceIndexError, "The relative error to reach", self.relative_error)
         if not is_number(self.smoothing) or self.smoothing < 0.0:
             raise PerformanceIndexError(f"The reach of the smoothing must be non-negative, got {self.smoothing!r}.")
 
@@ -404,8 +404,3 @@ def _inertia_felt(mechanism: Mechanism, name: str) -> float:
     (port,) = (force.port for force in mechanism.forces if force.name == name)
     mobilities = [lever**2 / inertia[name] for name, lever in port.items() if lever and name in inertia]
     return 1.0 / sum(mobilities) if mobilities else max(inertia.values())
-
-
-def _check_whole(what: str, value: object, least: int, most: int) -> None:
-    if not is_number(value) or value != int(value) or not least <= value <= most:
-        raise PerformanceIndexError(f"{what} must be an integer from {least} to {most}, got {value!r}.")

@@ -34,7 +34,7 @@ from inerter.simulation.event_driven import KERNELS
 from inerter.simulation.threads import threads
 from inerter.systems.descriptor import close
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.validation import check_whole, is_number
+from inerter.validation import check_share, check_whole
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.blas_threads import one_blas_thread
 
@@ -109,10 +109,8 @@ class ExpectedValue(FormerMethodNames):
             check_whole(PerformanceIndexError, "The length of a road in seconds", self.period, 1)
         if self.realisations is not None and self.relative_error is not None:
             raise PerformanceIndexError("Give either realisations or a relative_error to reach, not both.")
-        if self.relative_error is not None and not (is_number(self.relative_error) and 0.0 < self.relative_error < 1.0):
-            raise PerformanceIndexError(
-                f"The relative error to reach lies between 0 and 1, got {self.relative_error!r}."
-            )
+        if self.relative_error is not None:
+            check_share(PerformanceIndexError, "The relative error to reach", self.relative_error)
 
     def estimate(self, vehicle: Vehicle, index: Index) -> Estimate:
         """The index of a vehicle without free values."""

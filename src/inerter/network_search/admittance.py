@@ -26,7 +26,7 @@ from inerter.networks.elements import Damper, Network
 from inerter.networks.free_network import FreeNetwork
 from inerter.synthesis.best_admittance import best_admittance
 from inerter.synthesis.realise import realise
-from inerter.validation import is_whole
+from inerter.validation import check_whole
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -125,8 +125,7 @@ def optimise_admittance(
     (2.4281, ['Damper', 'Inerter'])
     """
     plan = plan_search(vehicle, index, EXACT_NORM, (), seed, starts)
-    if not is_whole(degree, 0, _MOST):
-        raise DesignError(f"`degree` must be an integer from 0 to {_MOST}, got {degree!r}.")
+    check_whole(DesignError, "`degree`", degree, 0, _MOST)
     objective = _AdmittanceIndex(_compile_index(plan))
     damping, omega = objective.scales()
     try:

@@ -27,7 +27,7 @@ from inerter.errors import SynthesisError
 from inerter.formatting import format_quantity
 from inerter.networks.elements import Network
 from inerter.synthesis.realise import realise
-from inerter.validation import check_positive, is_number, is_whole
+from inerter.validation import check_positive, check_whole, is_number
 from inerter.work.progress import report
 
 Floats = NDArray[Any]  # of float64, or of fractions in exact arithmetic
@@ -79,10 +79,8 @@ def best_admittance(
 
     Raises `SynthesisError` for invalid arguments, or if the index exists at no start.
     """
-    if not is_whole(degree):
-        raise SynthesisError(f"The degree of an admittance must be a non-negative integer, got {degree!r}.")
-    if not is_whole(starts, 1):
-        raise SynthesisError(f"The number of starts must be a positive integer, got {starts!r}.")
+    check_whole(SynthesisError, "The degree of an admittance", degree)
+    check_whole(SynthesisError, "The number of starts", starts, 1)
     check_positive(SynthesisError, "The typical damping", damping, "N s/m")
     check_positive(SynthesisError, "The typical frequency", omega, "rad/s")
 

@@ -13,7 +13,7 @@ from inerter.errors import OK, DesignError, Status, StatusKind
 from inerter.methods.method import Method, NonlinearitySupport
 from inerter.methods.registry import simulating_method
 from inerter.networks.elements import Element, Free, Tied
-from inerter.validation import check_whole, is_number, is_whole
+from inerter.validation import check_share, check_whole, is_whole
 from inerter.vehicle.replace_values import (
     check_one_meaning,
     elements_by_label,
@@ -50,8 +50,7 @@ class Scatter:
         if not self.spread:
             raise DesignError("spread is required, such as spread={'c': 0.1} for a damping within 10 %.")
         for name, part in self.spread:
-            if not is_number(part) or not 0.0 < part < 1.0:
-                raise DesignError(f"The relative tolerance of {name!r} must be between 0 and 1, got {part!r}.")
+            check_share(DesignError, f"The relative tolerance of {name!r}", part)
         if self.distribution not in DISTRIBUTIONS:
             known = " or ".join(repr(one) for one in DISTRIBUTIONS)
             raise DesignError(f"The distribution of a tolerance must be {known}, got {self.distribution!r}.")

@@ -39,7 +39,7 @@ from inerter.uncertainty.tolerance import (
     sample_status,
     with_scatter_of_values,
 )
-from inerter.validation import is_number
+from inerter.validation import check_share
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -69,8 +69,7 @@ class Quantile(OfIndex):
     seed: int = 0
 
     def __post_init__(self) -> None:
-        if not is_number(self.share) or not 0.0 < self.share < 1.0:
-            raise DesignError(f"The probability of a quantile must be between 0 and 1, got {self.share!r}.")
+        check_share(DesignError, "The probability of a quantile", self.share)
         check_sample(self.samples, self.seed)
 
     @property

@@ -63,10 +63,10 @@ def _python_number(value: object) -> object:
     return int(value) if isinstance(value, Integral) else float(value)
 
 
-def check_positive(error: type[InerterError], what: str, value: object, unit: str) -> None:
+def check_positive(error: type[InerterError], what: str, value: object, unit: str = "") -> None:
     """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:
-        raise error(f"{what} must be a positive number of {unit}, got {value!r}.")
+        raise error(f"{what} must be a positive number{f' of {unit}' if unit else ''}, got {value!r}.")
 
 
 def is_whole(value: object, least: int = 0, most: float = math.inf) -> TypeGuard[int]:

@@ -22,7 +22,7 @@ from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Objective, count_of
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
-from inerter.validation import is_number
+from inerter.validation import check_positive, is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import map_items
@@ -54,8 +54,7 @@ class Condition:
     if_there: bool = False
 
     def __post_init__(self) -> None:
-        if not is_number(self.share) or self.share <= 0.0:
-            raise PerformanceIndexError(f"The share of a condition must be a positive number, got {self.share!r}.")
+        check_positive(PerformanceIndexError, "The share of a condition", self.share)
         if not isinstance(self.vehicle, Mapping):
             raise PerformanceIndexError(
                 f"A condition gives numbers of the vehicle by name, such as {{'sprung_mass': 240.0}}, "

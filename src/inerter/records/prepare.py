@@ -16,7 +16,7 @@ from inerter.records.filtering import HIGHEST, low_pass
 from inerter.records.gaps import LONGEST, SCATTER, fill_missing_values, missing_rows
 from inerter.records.record import CHANNELS, Record
 from inerter.records.remedy import Action, Remedy
-from inerter.validation import is_number
+from inerter.validation import check_positive, is_number
 
 Vector = NDArray[np.float64]
 BOTH = ("displacement", "force")
@@ -97,8 +97,7 @@ def resample(record: Record, interval: float | None = None) -> Record:
     """
     usual = float(np.median(np.diff(record.time)))
     step = usual if interval is None else interval
-    if not is_number(step) or step <= 0.0:
-        raise RecordError(f"The interval between samples must be a positive number of s, got {interval!r}.")
+    check_positive(RecordError, "The interval between samples", step, "s")
     count = math.floor(record.duration / step * (1.0 + 1e-9)) + 1
     if not 4 <= count <= MOST:
         raise RecordError(
@@ -128,8 +127,7 @@ def fill_gaps(record: Record, longest: float) -> Record:
 
     Raises `RecordError` if a gap is longer.
     """
-    if not is_number(longest) or longest <= 0.0:
-        raise RecordError(f"The longest gap to fill must be a positive number of s, got {longest!r}.")
+    check_positive(RecordError, "The longest gap to fill", longest, "s")
     steps = np.diff(record.time)
     usual = float(np.median(steps))
     left_out = np.maximum(np.round(steps / usual).astype(int) - 1, 0)

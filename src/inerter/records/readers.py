@@ -21,7 +21,7 @@ from inerter.records.gaps import fill_missing, have_same_times, resample_onto_fo
 from inerter.records.prepare import with_missing_times
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
-from inerter.validation import checked, is_number
+from inerter.validation import check_positive, checked
 
 Opener = Callable[[str, str], AbstractContextManager[Contents]]
 FORMATS: dict[str, tuple[str, Opener]] = {
@@ -151,8 +151,7 @@ def _opener(name: str, source: str) -> Opener:
 def _check_interval(interval: float | None, time: str | int | None) -> None:
     if interval is None:
         return
-    if not is_number(interval) or interval <= 0.0:
-        raise RecordError(f"The interval between samples must be a positive number of s, got {interval!r}.")
+    check_positive(RecordError, "The interval between samples", interval, "s")
     if time is not None:
         raise RecordError(
             f"Give either the interval ({format_quantity(interval, 's', 6)}) or the time channel ({time!r}), not both."

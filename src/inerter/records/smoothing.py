@@ -22,7 +22,7 @@ from inerter.records.filtering import HIGHEST, gain, low_pass
 from inerter.records.gaps import LONGEST, missing_rows
 from inerter.records.record import Record
 from inerter.records.remedy import Action, Remedy
-from inerter.validation import is_number
+from inerter.validation import check_positive
 
 Vector = NDArray[np.float64]
 MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement
@@ -80,8 +80,8 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     """
     if not record.uniform:
         raise _uneven(record)
-    if bandwidth is not None and (not is_number(bandwidth) or bandwidth <= 0.0):
-        raise RecordError(f"A bandwidth must be a positive number of Hz, got {bandwidth!r}.")
+    if bandwidth is not None:
+        check_positive(RecordError, "A bandwidth", bandwidth, "Hz")
     interval = record.interval
     noise = noise_of(record.displacement, interval)
     limit = HIGHEST / interval

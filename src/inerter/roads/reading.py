@@ -24,7 +24,7 @@ from inerter.records.remedy import Action, Remedy
 from inerter.roads.profile import Profile
 from inerter.signals.signal import SampledSignal
 from inerter.units import is_unit, is_unit_for, parse_quantity, quote_value
-from inerter.validation import checked, is_number
+from inerter.validation import check_positive, checked, is_number
 
 Matrix = NDArray[np.float64]
 _TABLES = (".csv", ".tsv", ".txt", ".dat")
@@ -147,12 +147,12 @@ def _checked_units(units: object) -> dict[str, str]:
 def _read_table(
     name: str, source: str, units: dict[str, str], interval: float | None, named: Mapping[str, Any]
 ) -> Profile:
-    if interval is not None and (not is_number(interval) or interval <= 0.0):
-        raise RecordError(f"The interval between points must be a positive number of m, got {interval!r}.")
-    if interval is not None and named.get("distance") is not None:
-        raise RecordError(
-            f"Give either the interval ({format_quantity(interval, 'm', 6)}) or the column of distances, not both."
-        )
+    if interval is not None:
+        check_positive(RecordError, "The interval between points", interval, "m")
+        if named.get("distance") is not None:
+            raise RecordError(
+                f"Give either the interval ({format_quantity(interval, 'm', 6)}) or the column of distances, not both."
+            )
     asked = {role: named.get(role) for role in _WORDS}
     try:
         with tables.open_channels(name, source) as contents:

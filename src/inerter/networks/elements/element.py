@@ -14,7 +14,7 @@ from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, SymbolLine
 from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
 from inerter.networks.elements.values import Free, Tied, Value, check_name
-from inerter.validation import is_number
+from inerter.validation import check_positive, is_number
 
 
 class Element(Network):
@@ -80,9 +80,7 @@ class Element(Network):
     def _check_more(self) -> None:
         for field in self.more:
             number = getattr(self, field.name)
-            if not is_number(number) or number <= 0.0:
-                what = in_words(field.name).capitalize()
-                raise NetworkError(f"{what} must be a positive number of {field.unit}, got {number!r}.")
+            check_positive(NetworkError, in_words(field.name).capitalize(), number, field.unit)
 
     @classmethod
     def fields(cls) -> tuple[Field, ...]:

@@ -10,7 +10,7 @@ from inerter.exports.kinds.fmu.switching import SwitchingSystem
 from inerter.exports.refusals import delay_notes
 from inerter.formatting import format_quantity, format_range
 from inerter.systems.outputs import velocity_of
-from inerter.validation import is_number
+from inerter.validation import check_positive
 from inerter.vehicle.mechanism import LARGEST, SMALLEST, Mechanism, RoadInput
 
 
@@ -19,8 +19,7 @@ def on_one_road(system: SwitchingSystem, mechanism: Mechanism, speed: float) -> 
 
     Raises `ExportError` for a speed that is no positive number, or one that a host could not set.
     """
-    if not is_number(speed) or speed <= 0.0:
-        raise ExportError(f"The speed must be a positive number of m/s, got {speed!r}.")
+    check_positive(ExportError, "The speed", speed, "m/s")
     if not SMALLEST <= speed <= LARGEST:
         raise ExportError(f"The speed is {speed!r} m/s; an FMU supports {format_range(SMALLEST, LARGEST, 'm/s')}.")
     names = [one.name for one in system.inputs]

@@ -49,8 +49,11 @@ def adopt_renamed(given: object, **new_names: str) -> None:
         places = chain((own,), map(vars, kind.__mro__))
         nearest = next((one for one in places if new in one or old in one), {new: None})
         if new not in nearest and not isinstance(nearest[old], RenamedAttribute):
+            try:
+                setattr(kind, new, property(attrgetter(old)))
+            except TypeError:  # a built-in class, whose `old` is something else
+                continue
             warn_renamed(f"{kind.__name__}.{old}", new, 4)
-            setattr(kind, new, property(attrgetter(old)))
 
 
 def renamed_keywords(**new_names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:

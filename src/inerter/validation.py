@@ -6,12 +6,17 @@ import functools
 import inspect
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from itertools import chain
 from numbers import Integral, Real
-from typing import ParamSpec, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeGuard, TypeVar
 
 from inerter.errors import InerterError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -63,6 +68,35 @@ def _python_number(value: object) -> object:
     return int(value) if isinstance(value, Integral) else float(value)
 
 
+def is_flag(value: object) -> bool:
+    """Whether `value` is True or False, of Python or NumPy."""
+    return isinstance(value, bool) or type(value).__name__ == "bool"
+
+
+def is_listed(value: object) -> TypeGuard[Collection[Any]]:
+    """Whether `value` lists its parts: no text, and no array without dimensions.
+
+    >>> is_listed([1.0]), is_listed("k"), is_listed(None)
+    (True, False, False)
+    """
+    return isinstance(value, Collection) and not isinstance(value, str | bytes) and getattr(value, "shape", None) != ()
+
+
+def real_numbers(value: object) -> NDArray[np.float64] | None:
+    """The array of `value`, or None unless it holds real numbers alone (neither texts nor bools) that doubles can hold.
+
+    >>> real_numbers([1, 2.5]), real_numbers(["1"]), real_numbers([[1, 2], [3]])
+    (array([1. , 2.5]), None, None)
+    """
+    import numpy as np  # noqa: PLC0415 - heavy
+
+    try:
+        given = np.asarray(value)
+        return given.astype(float, copy=False) if given.dtype.kind in "iufO" else None
+    except (TypeError, ValueError, OverflowError):
+        return None
+
+
 def check_positive(error: type[InerterError], what: str, value: object, unit: str = "") -> None:
     """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:
@@ -96,7 +130,8 @@ def check_share(error: type[InerterError], what: str, value: object) -> None:
 def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Decorator of a public function that raises `error` for an argument that is not what its annotation says.
 
-    It checks flags, strings, paths and objects of the classes in `_OBJECTS`; other annotations are for the function.
+    It checks flags, strings, paths, objects of the classes in `_OBJECTS`, lists and mappings of these, pairs and
+    functions; other annotations are for the function.
 
     >>> @checked(InerterError)
     ... def shown(name: str, bold: bool = False) -> None: ...
@@ -114,7 +149,7 @@ def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P,
         def call(*args: P.args, **kwargs: P.kwargs) -> R:
             for name, value in chain(zip(names, args, strict=False), kwargs.items()):
                 if name in wanted and not any(_is_a(value, kind) for kind in wanted[name]):
-                    words = dict.fromkeys(_WORDS.get(kind, f"a {kind}") for kind in wanted[name])
+                    words = dict.fromkeys(map(_in_words, wanted[name]))
                     raise error(f"`{name}` must be {' or '.join(words)}, got {_short(value)}.")
             return function(*args, **kwargs)
 
@@ -123,14 +158,38 @@ def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P,
     return decorate
 
 
-_WORDS = {"bool": "True or False", "str": "a string", "Path": "a path", "os.PathLike[str]": "a path", "None": "None"}
-_OBJECTS = frozenset({"Axes", "Dataset", "LinearSystem", "Record", "Trajectory"})
+_WORDS = {
+    "bool": "True or False",
+    "str": "a string",
+    "Path": "a path",
+    "os.PathLike[str]": "a path",
+    "None": "None",
+    "Callable[[float], None]": "a function",
+    "Sequence[str]": "a list of strings",
+    "tuple[float, float]": "two numbers",
+    "tuple[str, str]": "two strings",
+}
+_OBJECTS = frozenset(
+    {"Axes", "Dataset", "FitOptions", "LinearSystem", "Network", "ParetoFront", "Record", "Rig", "Trajectory"}
+)
+_LIST, _MAPPING = "Sequence[", "Mapping[str, "
 
 
 def _alternatives(annotation: object) -> list[str]:
     """Alternatives of an annotation; none unless all of them can be checked."""
     kinds = [kind.strip().removeprefix("xr.") for kind in str(annotation).split("|")]
-    return kinds if all(kind in _WORDS or kind in _OBJECTS for kind in kinds) else []
+    parts = [kind.removeprefix(_LIST).removeprefix(_MAPPING).removesuffix("]") for kind in kinds]
+    checkable = (kind in _WORDS or part in _OBJECTS for kind, part in zip(kinds, parts, strict=True))
+    return kinds if all(checkable) else []
+
+
+def _in_words(kind: str) -> str:
+    if kind in _WORDS:
+        return _WORDS[kind]
+    for begin, words in ((_LIST, "a list of"), (_MAPPING, "a mapping of names to")):
+        if kind.startswith(begin):
+            return f"{words} {kind[len(begin) : -1]} objects"
+    return f"{'an' if kind[0] in 'AEIOU' else 'a'} {kind}"
 
 
 def _is_a(value: object, kind: str) -> bool:
@@ -138,11 +197,21 @@ def _is_a(value: object, kind: str) -> bool:
         case "None":
             return value is None
         case "bool":
-            return isinstance(value, bool) or type(value).__name__ == "bool"  # of NumPy
+            return is_flag(value)
         case "str":
             return isinstance(value, str)
         case "Path" | "os.PathLike[str]":
             return isinstance(value, os.PathLike)
+        case "Callable[[float], None]":
+            return callable(value)
+        case "tuple[float, float]" | "tuple[str, str]":
+            fits = is_number if "float" in kind else partial(_is_a, kind="str")
+            return is_listed(value) and len(pair := list(value)) == 2 and all(map(fits, pair))
+    if kind.startswith(_LIST):
+        return is_listed(value) and all(_is_a(part, kind[len(_LIST) : -1]) for part in value)
+    if kind.startswith(_MAPPING):
+        parts = value.items() if isinstance(value, Mapping) else ((None, None),)
+        return all(isinstance(name, str) and _is_a(part, kind[len(_MAPPING) : -1]) for name, part in parts)
     return any(one.__name__ == kind for one in type(value).__mro__)
 
 

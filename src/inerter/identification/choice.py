@@ -20,7 +20,7 @@ from inerter.identification.identify import solution_of
 from inerter.identification.intervals import soft_squares
 from inerter.identification.models import MODELS, VISCOUS
 from inerter.identification.noise import Whitening, noise_whitening
-from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
+from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges, options_of
 from inerter.identification.solving import SolvedFit
 from inerter.identification.statements.findings import FitFinding
 from inerter.kernels.prepare import prepare_on
@@ -119,7 +119,7 @@ def select_model(
     >>> it.select_model(record, ["ideal", "friction"], starts=8).name
     'friction'
     """
-    asked = options.replace(**changes)
+    asked = options_of(options, changes)
     given = _models_by_name(models)
     records = checked_records(records)
     warn_of_units(records)

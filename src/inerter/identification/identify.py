@@ -14,7 +14,7 @@ from inerter.identification.arguments import checked_records, model_of, warn_of_
 from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.models import with_mount
-from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges
+from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges, options_of
 from inerter.identification.scales import apply_scales
 from inerter.identification.solving import SolvedFit, solve
 from inerter.kernels.prepare import prepare_on
@@ -69,7 +69,7 @@ def identify(
     >>> fit.status.ok, abs(fit.parameters["b"].value - 113.0) < 1.0  # kg
     (True, True)
     """
-    asked = options.replace(**changes)
+    asked = options_of(options, changes)
     given, device = checked_records(records), model_of(model)
     warn_of_units(given)
     with running_on(executor) as pool:

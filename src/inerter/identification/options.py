@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TypedDict
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import IdentificationError, UnitError
 from inerter.records.uncertain import Uncertain, parse_uncertain
-from inerter.validation import check_whole, is_number
+from inerter.validation import check_whole, is_flag, is_number
 
 POINTS = 128  # starts of a search
 
@@ -55,6 +56,9 @@ class FitOptions:
         if not is_number(self.check) or not 0.0 <= self.check <= 0.6:
             raise IdentificationError(f"check: the validation fraction must be from 0 to 0.6, got {self.check!r}.")
         check_whole(IdentificationError, "starts", self.starts, 8)
+        for name in ("offset", "gain", "quadratic_damping"):
+            if not is_flag(getattr(self, name)):
+                raise IdentificationError(f"{name} must be True or False, got {getattr(self, name)!r}.")
         for name in ("force_scale", "displacement_scale"):
             given = getattr(self, name)
             if given is not None:
@@ -76,6 +80,13 @@ class FitOptions:
         return replace(self, **changes)  # type: ignore[arg-type]
 
     changed = RenamedAttribute("replace")
+
+
+def options_of(options: object, changes: Mapping[str, object]) -> FitOptions:
+    """The options with some of them replaced; raises `IdentificationError` for others, or an unknown one."""
+    if not isinstance(options, FitOptions):
+        raise IdentificationError(f"The options of a fit must be FitOptions(...), got {options!r}.")
+    return options.replace(**changes)
 
 
 def _scale(name: str, given: object) -> Uncertain:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from inerter.errors import LinearSystemError, RecordError, Status
 from inerter.formatting import format_quantity
-from inerter.networks.elements import Network
+from inerter.networks.elements import Network, check_network
 from inerter.networks.transform import linearise
 from inerter.records.periods import common_periods, whole_periods
 from inerter.records.record import Record
@@ -22,6 +22,7 @@ from inerter.records.spectra import lines_of
 from inerter.signals.harmonics import Harmonics
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
+from inerter.validation import check_positive, checked, real_numbers
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
@@ -31,6 +32,7 @@ _HIGHEST = 0.8  # of half the rate: no filter is applied above that
 _ORDER = 4  # of the Butterworth filter, which goes forward and backward
 
 
+@checked(RecordError)
 def model_response(
     model: Network | Rig,
     records: Record | Sequence[Record],
@@ -59,6 +61,7 @@ def model_response(
     array([10004.934])
     """
     rig = model if isinstance(model, Rig) else Rig(model)
+    check_positive(RecordError, "The step of the simulation", step, "s")
     chosen = [records] if isinstance(records, Record) else list(records)
     measured = frequency_response(chosen, estimator=estimator, segment=segment)
     if segment is None and (periods := common_periods(chosen)) is not None:
@@ -97,7 +100,8 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
 
     With a load cell of `cell_bandwidth` [Hz], if that is given.
 
-    Raises `DesignError` if a value is free, `LinearSystemError` unless omega holds positive frequencies [rad/s].
+    Raises `NetworkError` if there is no network, `DesignError` if a value is free, `LinearSystemError` unless omega
+    holds positive frequencies [rad/s], `RecordError` unless the bandwidth is a positive number.
 
     >>> import inerter as it
     >>> import numpy as np
@@ -105,13 +109,13 @@ def linear_response(model: Network | Rig, omega: ArrayLike, cell_bandwidth: floa
     >>> np.allclose(response.value, [-100.0, -10000.0])  # force over displacement [N/m]: -omega^2 b
     True
     """
-    device = model.device if isinstance(model, Rig) else model
-    try:
-        frequencies = np.atleast_1d(np.asarray(omega, dtype=float))
-    except (TypeError, ValueError):
-        frequencies = np.full(1, np.nan)
-    if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies) & (frequencies > 0.0)):
+    device = check_network(model.device if isinstance(model, Rig) else model)
+    if cell_bandwidth is not None:
+        check_positive(RecordError, "The bandwidth of a load cell", cell_bandwidth, "Hz")
+    given = real_numbers(omega)
+    if given is None or given.ndim > 1 or not np.all(np.isfinite(given) & (given > 0.0)):
         raise LinearSystemError("omega must be a list of positive frequencies [rad/s].")
+    frequencies = np.atleast_1d(given)
     value = np.asarray(1j * frequencies * device.admittance(1j * frequencies))
     linear = linearise(device)
     left_out = {e.key: [o.label for o in linear.left_out if o.key == e.key] for e in linear.left_out}

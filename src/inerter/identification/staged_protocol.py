@@ -34,7 +34,7 @@ from inerter.records.smoothing import smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation.simulate import simulate
 from inerter.statements import Severity
-from inerter.validation import check_positive
+from inerter.validation import check_positive, checked
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
@@ -129,6 +129,7 @@ class SearchChanges(TypedDict, total=False):
     starts: int
 
 
+@checked(IdentificationError)
 def identify_staged(
     friction: Record,
     fit: Record,

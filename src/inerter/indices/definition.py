@@ -257,8 +257,10 @@ def on_road(
     >>> it.on_road(index, car, (it.OutputWeight("strut_travel"),), "struts").unit
     'm'
     """
-    if isinstance(index.road, type) or not (isinstance(index.road, Road) or getattr(index.road, "is_random", False)):
-        raise PerformanceIndexError(f"{index.symbol} needs a Road(roughness=..., speed=...), got {index.road!r}.")
+    road = getattr(index, "road", None)
+    if isinstance(road, type) or not (isinstance(road, Road) or getattr(road, "is_random", False)):
+        what = getattr(index, "symbol", f"The index {index!r}")
+        raise PerformanceIndexError(f"{what} needs a Road(roughness=..., speed=...), got {road!r}.")
     if isinstance(index.road, Road) and not mechanism.roads:
         raise PerformanceIndexError(f"{index.symbol} requires a road, and this mechanism has no tyre. Add a tyre.")
     if not outputs:

@@ -87,8 +87,8 @@ def weighting_filter(name: str) -> Filter:
     return Filter(*(tuple(Fraction(c) / unit for c in part) for part in (exact.numerator, exact.denominator)))
 
 
-@cache
 @checked(PerformanceIndexError)
+@cache
 def iso2631_weighting(name: str) -> LinearSystem:
     """The frequency weighting "Wk", "Wd", "Wf", "We", "Wc" or "Wj" of ISO 2631-1:1997.
 

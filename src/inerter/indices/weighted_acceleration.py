@@ -12,7 +12,7 @@ from inerter.errors import PerformanceIndexError
 from inerter.formatting import format_alike
 from inerter.indices.iso2631 import iso2631_weighting
 from inerter.systems.linear import LinearSystem
-from inerter.validation import checked
+from inerter.validation import checked, real_numbers
 
 Array = NDArray[np.float64]
 _RUNNING = 1.0  # [s] of a running r.m.s. value
@@ -95,10 +95,9 @@ def _filter_samples(system: LinearSystem, given: Array, step: float) -> Array:
 
 
 def _check_samples(time: ArrayLike, acceleration: ArrayLike) -> tuple[Array, Array]:
-    try:
-        times, given = np.asarray(time, dtype=float), np.asarray(acceleration, dtype=float)
-    except (TypeError, ValueError):
-        raise PerformanceIndexError("A weighted motion requires two lists of numbers, time and acceleration.") from None
+    times, given = real_numbers(time), real_numbers(acceleration)
+    if times is None or given is None:
+        raise PerformanceIndexError("A weighted motion requires two lists of numbers, time and acceleration.")
     if times.ndim != 1 or times.shape != given.shape or not (np.all(np.isfinite(times)) and np.all(np.isfinite(given))):
         raise PerformanceIndexError(
             f"Time and acceleration must be two equally long lists of finite numbers, got shapes {times.shape} and "

@@ -10,13 +10,14 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import Status, worst_of
+from inerter.errors import DesignError, Status, worst_of
 from inerter.formatting import format_alike, format_percent_size, typeset
 from inerter.methods.averages import interval_of, mean_and_error
 from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import AveragingMethod, Estimate, Method, MethodWithControls, evaluate
 from inerter.methods.ties import ACCURACY
 from inerter.notebook import shown_by
+from inerter.validation import is_listed
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -124,8 +125,11 @@ def compare(
     >>> round(two.percent, 1), two.percent_error < 0.02
     (-0.3, True)
     """
+    one, other = known if is_listed(known) and len(known) == 2 else (known, known)
+    if not isinstance(one, Estimate | None) or not isinstance(other, Estimate | None):
+        raise DesignError(f"`known` must be two estimates, or None in place of either, got {known!r}.")
     with running_on(executor):
-        return _compare(first, second, index, method, known)
+        return _compare(first, second, index, method, (one, other))
 
 
 def _compare(first: Vehicle, second: Vehicle, index: IndexLike, method: Method, known: Known) -> Comparison:

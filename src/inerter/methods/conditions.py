@@ -22,7 +22,7 @@ from inerter.methods.method import Estimate, Method, constituents_of
 from inerter.methods.objective import Objective, count_of
 from inerter.networks.elements import Tied
 from inerter.signals.road import Road
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, is_listed, is_number
 from inerter.vehicle.replace_values import replace_values
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import map_items
@@ -105,7 +105,7 @@ class Conditions:
     conditions: tuple[Condition, ...]
 
     def __init__(self, conditions: Iterable[Condition]) -> None:
-        several = tuple(conditions) if isinstance(conditions, Iterable) else (conditions,)
+        several = tuple(conditions) if is_listed(conditions) else (conditions,)
         if not several or not all(isinstance(one, Condition) for one in several):
             raise PerformanceIndexError(f"Conditions are a list of Condition(...), at least one, got {conditions!r}.")
         object.__setattr__(self, "conditions", several)

@@ -34,6 +34,7 @@ from inerter.systems.graph import full_graph
 from inerter.systems.input_paths import inputs_of
 from inerter.systems.outputs import check_bounded, check_inputs, find, main_outputs, outputs
 from inerter.table import Quantity
+from inerter.validation import real_numbers
 from inerter.vehicle.mechanism import check_known
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 from inerter.work.pool import Pool
@@ -266,6 +267,8 @@ def evaluate_many(
     (3, 2)
     """
     several = [indices] if not isinstance(indices, Sequence) else list(indices)
+    if not several:
+        raise PerformanceIndexError("Expected at least one index, such as RideComfort(road), got an empty list.")
     for index in several:
         check_request(vehicle, index, method)
     points = check_points(vehicle, values)
@@ -347,13 +350,9 @@ def check_points(vehicle: Vehicle, values: Mapping[str, ArrayLike]) -> dict[str,
         raise DesignError(f"Values for {', '.join(missing)} missing; every free value of the design requires some.")
     arrays: dict[str, Array] = {}
     for name, given in values.items():
-        try:
-            array = np.asarray(given)
-            if np.iscomplexobj(array):
-                raise TypeError
-            array = array.astype(float)
-        except (TypeError, ValueError):
-            raise DesignError(f"The values of {name!r} must be numbers, got {given!r}.") from None
+        array = real_numbers(given)
+        if array is None:
+            raise DesignError(f"The values of {name!r} must be numbers, got {given!r}.")
         if array.ndim > 1 or not np.all(np.isfinite(array)) or not np.all(array > 0.0):
             raise DesignError(f"The values of {name!r} must be a list of positive, finite numbers.")
         arrays[name] = array

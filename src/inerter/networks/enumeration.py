@@ -7,16 +7,17 @@ from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, reduce
 from itertools import chain, combinations, combinations_with_replacement, product
-from operator import index, or_, sub
+from operator import or_, sub
 from typing import Any, TypeAlias
 
 from inerter.errors import NetworkError
 from inerter.networks.elements import ELEMENT_TYPES, Bridge, Damper, Element, Inerter, Network, Spring
-from inerter.validation import checked
+from inerter.validation import checked, is_listed, is_whole
 
 Tree: TypeAlias = Any  # a leaf is the symbol of an element; else (operator, part, part, ...) with an operator below
 PARALLEL, SERIES, BRIDGE = OPERATORS = ("|", "-", "bridge")  # a bridge has five arms, as `Bridge`
 
+_MOST = 20  # elements, far beyond what any computer can list
 _RANK = {kind.symbol: rank for rank, kind in enumerate(ELEMENT_TYPES)}
 
 
@@ -132,19 +133,17 @@ def enumerate_networks(
     >>> [len(list(enumerate_networks(n))) for n in (1, 2, 3, 4)]
     [3, 6, 20, 90]
     """
-    try:
-        count = index(elements)
-    except TypeError:
-        count = 0
-    if count < 1:
-        raise NetworkError(f"The number of elements must be a positive integer such as 4, got {elements!r}.")
-    checked = tuple(kinds)
+    if not is_whole(elements, 1, _MOST):
+        raise NetworkError(
+            f"The number of elements must be a positive integer such as 4, of at most {_MOST}, got {elements!r}."
+        )
+    checked = tuple(kinds) if is_listed(kinds) else ()
     if not checked or not all(isinstance(kind, type) and issubclass(kind, Element) for kind in checked):
         raise NetworkError(f"kinds must be kinds of elements such as (Spring, Damper, Inerter), got {kinds!r}.")
     symbols = [kind.symbol for kind in checked]
     if len(set(symbols)) < len(symbols):
         raise NetworkError(f"kinds must differ, got {', '.join(kind.__name__ for kind in checked)}.")
-    return iter(sorted(map(Topology, _Trees(symbols, like_neighbours, bridges).of_size(count))))
+    return iter(sorted(map(Topology, _Trees(symbols, like_neighbours, bridges).of_size(int(elements)))))
 
 
 class _Trees:

@@ -14,6 +14,7 @@ from inerter.kernels.modal_sums import add_modes
 from inerter.norms.delay import pade, transfer
 from inerter.norms.stability import balance
 from inerter.systems.linear import LinearSystem, check_system
+from inerter.validation import real_numbers
 
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -48,13 +49,10 @@ def _response(system: LinearSystem, omega: ArrayLike, pade_order: int | None, re
     check_system(system)
     if pade_order is not None:
         pade(pade_order)  # refuses an order that there is not, even where nothing is late
-    try:
-        given = np.asarray(omega)
-        if given.dtype.kind not in "iufO":  # a text or a bool that NumPy would convert
-            raise TypeError
-        frequencies = np.atleast_1d(given.astype(float))
-    except (TypeError, ValueError):
-        raise LinearSystemError(f"A frequency response needs a list of frequencies [rad/s], got {omega!r}.") from None
+    given = real_numbers(omega)
+    if given is None:
+        raise LinearSystemError(f"A frequency response needs a list of frequencies [rad/s], got {omega!r}.")
+    frequencies = np.atleast_1d(given)
     if frequencies.ndim != 1 or not np.all(np.isfinite(frequencies)):
         raise LinearSystemError("A frequency response needs a list of finite frequencies [rad/s].")
     response = resolved(system)(frequencies)

@@ -13,7 +13,7 @@ from inerter.errors import RecordError, SignalError
 from inerter.formatting import format_alike, format_quantity
 from inerter.signals.arguments import positive_number
 from inerter.signals.signal import SampledSignal, Signal
-from inerter.validation import is_number
+from inerter.validation import is_number, real_numbers
 
 Matrix = NDArray[np.float64]
 LEFT, RIGHT = "left", "right"
@@ -43,8 +43,8 @@ class Profile:
             given = getattr(self, name)
             if given is None and name == "right":
                 continue
-            values: NDArray[np.generic] = np.asarray(given)
-            if values.ndim != 1 or values.dtype.kind not in "fiu" or values.size < 2:
+            values = real_numbers(given)
+            if values is None or values.ndim != 1 or values.size < 2:
                 raise RecordError(f"The {name} of a profile must be a vector of two or more real numbers [m].")
             if values.size != np.size(self.distance):
                 raise RecordError(

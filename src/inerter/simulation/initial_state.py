@@ -12,6 +12,7 @@ from inerter.errors import SimulationError
 from inerter.simulation.statics import equilibrium
 from inerter.simulation.trajectory import FinalState, Trajectory
 from inerter.systems.piecewise import PiecewiseSystem
+from inerter.validation import real_numbers
 
 Matrix = NDArray[np.float64]
 _KEPT = 16  # systems
@@ -37,10 +38,10 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
         moving = np.zeros(roads) if rates is None else rates[:roads]
         given = np.concatenate([_starting_velocities(system, moving), _positions(system, inputs[:roads], force)])
     else:
-        try:
-            given = np.array(initial, dtype=float)
-        except (TypeError, ValueError):
-            raise SimulationError(f"The initial state is an array of {n} numbers, got {initial!r}.") from None
+        numbers = real_numbers(initial)
+        if numbers is None:
+            raise SimulationError(f"The initial state is an array of {n} numbers, got {initial!r}.")
+        given = np.array(numbers)
     if given.shape != (n,) or not np.all(np.isfinite(given)):
         raise SimulationError(
             f"The initial state needs {n} finite numbers ({', '.join(system.states)}), got {given.tolist()}."

@@ -35,7 +35,7 @@ from inerter.systems.polynomials import (
     trim,
     value,
 )
-from inerter.validation import is_number
+from inerter.validation import is_listed, is_number
 
 _INNER = 64  # parts of an interval between two roots in which the real part is negative
 _OUTER = [Fraction(5, 4) ** i for i in range(1, 100)]  # ratios to the outermost roots
@@ -133,7 +133,7 @@ def real_part(n: Polynomial, d: Polynomial) -> Polynomial:
 
 def _coefficients(given: Iterable[float], what: str) -> list[Fraction]:
     expected = f"The {what} of an admittance must be a list of real numbers, highest power of s first"
-    if isinstance(given, str | bytes | Mapping | Set) or not isinstance(given, Iterable):
+    if isinstance(given, Mapping | Set) or not is_listed(given):
         raise SynthesisError(f"{expected}, got {given!r}. Write, for example, [1.0, 2.0, 3.0].")
     numbers: list[Any] = list(given)
     if not numbers:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import LinearSystemError
 from inerter.systems.polynomials import TransferFunctions
+from inerter.validation import real_numbers
 
 Matrix = NDArray[np.float64]
 
@@ -90,10 +91,9 @@ class LinearSystem:
 
     def __post_init__(self) -> None:
         for name in "ABCD":
-            try:
-                matrix = np.asarray(getattr(self, name), dtype=float)
-            except (TypeError, ValueError):
-                raise LinearSystemError(f"{name} must be a matrix of numbers.") from None
+            matrix = real_numbers(getattr(self, name))
+            if matrix is None:
+                raise LinearSystemError(f"{name} must be a matrix of real numbers.")
             if matrix.ndim != 2:
                 raise LinearSystemError(f"{name} must be a matrix, got an array of shape {matrix.shape}.")
             _check_finite(name, matrix)
@@ -108,10 +108,9 @@ class LinearSystem:
         for name, letter, count in (("states", "x", n), ("inputs", "u", m), ("outputs", "y", p)):
             object.__setattr__(self, name, _labels(name, getattr(self, name), letter, count))
         object.__setattr__(self, "sources", check_names("sources", self.sources) or self.inputs)
-        try:
-            delays = np.asarray(self.delays, dtype=float)
-        except (TypeError, ValueError):
-            raise LinearSystemError(f"The delays of a system are numbers of seconds, got {self.delays!r}.") from None
+        delays = real_numbers(self.delays)
+        if delays is None:
+            raise LinearSystemError(f"The delays of a system are numbers of seconds, got {self.delays!r}.")
         object.__setattr__(self, "delays", delays if delays.size else np.zeros(m))
         fits = len(self.sources) == m and self.delays.shape == (m,)
         if not (fits and all(0.0 <= delay < math.inf for delay in self.delays.tolist())):

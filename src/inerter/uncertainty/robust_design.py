@@ -40,7 +40,7 @@ from inerter.uncertainty.tolerance import (
     with_scatter_of_values,
 )
 from inerter.validation import check_share
-from inerter.vehicle.vehicle import Vehicle
+from inerter.vehicle.vehicle import Vehicle, check_vehicle
 
 Array = NDArray[np.float64]
 _WEIGHT = 1e-6  # smallest weight of a sample that contributes to a gradient
@@ -261,6 +261,7 @@ def optimise_robust(
     2.5
     """
     at = Quantile(index, scatter_of(spread, "uniform"), quantile, samples, seed)
+    check_vehicle(vehicle)
     starts = 2 * len(vehicle.free_values()) or None
     found = optimise(vehicle, at, method, subject_to=subject_to, seed=seed, starts=starts, executor=executor)
     if not np.isfinite(found.value):

@@ -18,7 +18,7 @@ from inerter.formatting import format_number, format_quantity, format_range
 from inerter.networks.elements import NAME, Element, Free, Inerter, Network, Tied, check_network, middle
 from inerter.networks.transform import check_named_apart, name_free_values, with_values
 from inerter.notebook import shown_by
-from inerter.validation import check_positive, is_number, use_python_numbers
+from inerter.validation import check_positive, is_listed, is_number, use_python_numbers
 
 SMALLEST, LARGEST = 1e-12, 1e15  # of values in SI units, other than zero
 _ROUNDING, _SHORTEST = 1e-13, 1e-8  # of lever arms of a coordinate, over its longest: a zero, and what is told from one
@@ -378,7 +378,7 @@ def check_known(values: object, free_values: Mapping[str, Free]) -> None:
 
 
 def _parts(name: str, given: object, kind: type) -> tuple[object, ...]:
-    if isinstance(given, Iterable) and not isinstance(given, str):
+    if is_listed(given):
         parts = tuple(given)
         if all(isinstance(part, kind) for part in parts):
             return parts

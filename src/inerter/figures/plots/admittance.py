@@ -8,15 +8,18 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
+from inerter.errors import NetworkError
 from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_curve_legend, axes_pair, curve_looks, label_gain_and_phase
 from inerter.figures.plots.responses import check_frequencies
 from inerter.figures.style import style_context
 from inerter.networks.elements.algebra import Network, check_network
+from inerter.validation import checked
 
 _POINTS = 800  # frequencies
 
 
+@checked(NetworkError)
 def plot_admittance(
     networks: Network | Mapping[str, Network], *, frequency: ArrayLike | None = None, axes: Sequence[Axes] | None = None
 ) -> tuple[Axes, Axes]:

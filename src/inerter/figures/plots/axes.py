@@ -8,6 +8,7 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from inerter.errors import LinearSystemError
 from inerter.figures.labels import axis_label
 from inerter.figures.style import add_legend, colour, layout_styles, log_axis, new_figure
 
@@ -19,8 +20,10 @@ def single_axes(ax: Axes | None) -> Axes:
 
 def axes_pair(axes: Sequence[Axes] | None) -> tuple[Axes, Axes]:
     """The two axes that are given, or new ones above one another."""
-    upper, lower = axes if axes is not None else new_figure(2, height=2.4, width=4.6)[1]
-    return upper, lower
+    several = list(axes) if axes is not None else new_figure(2, height=2.4, width=4.6)[1]
+    if len(several) != 2:
+        raise LinearSystemError(f"A gain and a phase need two axes, got {len(several)}.")
+    return several[0], several[1]
 
 
 def label_gain_and_phase(upper: Axes, lower: Axes, gain: str) -> None:

@@ -9,14 +9,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
+from inerter.errors import LinearSystemError
 from inerter.figures.plots.axes import add_curve_legend, axes_pair, label_gain_and_phase
 from inerter.figures.plots.responses import Designs, Response, response_curves
 from inerter.figures.style import style_context
+from inerter.validation import checked
 
 Array = NDArray[np.float64]
 _HALF_TURN = 180.0  # [deg]
 
 
+@checked(LinearSystemError)
 def plot_bode(
     designs: Designs, response: Response, *, frequency: ArrayLike | None = None, axes: Sequence[Axes] | None = None
 ) -> tuple[Axes, Axes]:

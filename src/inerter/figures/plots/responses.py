@@ -21,6 +21,7 @@ from inerter.systems.assemble import state_space
 from inerter.systems.descriptor import close
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import input_unit, unit_of
+from inerter.validation import real_numbers
 from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
@@ -90,10 +91,10 @@ def designs_by_name(designs: Designs) -> dict[str, Vehicle]:
 
 
 def check_frequencies(frequency: ArrayLike) -> Array:
-    found = np.atleast_1d(np.asarray(frequency, dtype=float))
-    if found.ndim != 1 or not found.size or not np.all(np.isfinite(found) & (found > 0.0)):
-        raise LinearSystemError("Frequencies of a plot are a list of positive numbers of Hz.")
-    return found
+    found = real_numbers(frequency)
+    if found is None or found.ndim > 1 or not found.size or not np.all(np.isfinite(found) & (found > 0.0)):
+        raise LinearSystemError(f"Frequencies of a plot are a list of positive numbers of Hz, got {frequency!r}.")
+    return np.atleast_1d(found)
 
 
 def _fainter(row: int) -> dict[str, Any]:

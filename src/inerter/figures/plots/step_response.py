@@ -16,7 +16,7 @@ from inerter.formatting import capital, in_words
 from inerter.systems.assemble import state_space
 from inerter.systems.linear import LinearSystem
 from inerter.systems.outputs import input_unit, unit_of
-from inerter.validation import checked
+from inerter.validation import check_positive, checked
 
 Array = NDArray[np.float64]
 
@@ -38,6 +38,7 @@ def plot_step_response(
     >>> it.plot_step_response(car, ("road", "sprung_displacement")).get_xlabel()
     'Time [s]'
     """
+    check_positive(LinearSystemError, "The duration", duration, "s")
     time = np.linspace(0.0, duration, _STEPS)
     with style_context():
         given, ax = ax, single_axes(ax)

@@ -43,14 +43,7 @@ def plot_trajectory(
     ['Sprung acceleration [m/s²]', 'Tyre load [N]']
     """
     names = [outputs] if isinstance(outputs, str) else list(outputs)
-    low, high = window if window is not None else (float(run.time[0]), float(run.time[-1]))
-    inside = (run.time >= low) & (run.time <= high)
-    if not names or not inside.any():
-        known = format_range(run.time[0], run.time[-1], "s")
-        raise SimulationError(
-            f"A plot of a motion needs outputs, and samples in its window: got {names!r} from "
-            f"{format_range(low, high, 's')}, where the motion is known from {known}."
-        )
+    inside, (low, high) = _samples_within(run, window, names)
     with style_context():
         several = list(axes) if axes is not None else new_figure(len(names), height=1.9)[1]
         if len(several) != len(names):
@@ -76,7 +69,7 @@ def plot_loop(
 ) -> Axes:
     """An output of a simulated motion over another one, such as a force over a displacement.
 
-    Raises `SimulationError` for an output that is not there.
+    Raises `SimulationError` for an output that is not there, or a window without samples.
 
     >>> import inerter as it
     >>> rig = it.Rig((it.Spring(1e6) | it.Damper(3200.0)) - (it.Inerter(113.0) | it.Friction(10.0)))
@@ -84,14 +77,28 @@ def plot_loop(
     >>> it.plot_loop(run, "displacement", "device_force").get_ylabel()
     'Device force [N]'
     """
-    low, high = window if window is not None else (float(run.time[0]), float(run.time[-1]))
-    inside = (run.time >= low) & (run.time <= high)
+    inside, _ = _samples_within(run, window, [across, up])
     with style_context():
         ax = single_axes(ax)
         (along, x_label), (height, y_label) = (scale_output(run, name, inside) for name in (across, up))
         ax.plot(along, height, linewidth=0.9, color=colour(0))
         ax.set(xlabel=x_label, ylabel=y_label)
     return ax
+
+
+def _samples_within(
+    run: Trajectory, window: tuple[float, float] | None, names: Sequence[str]
+) -> tuple[NDArray[np.bool_], tuple[float, float]]:
+    """Which samples are in the window, and its ends; raises `SimulationError` if there is no sample, or no output."""
+    low, high = window if window is not None else (float(run.time[0]), float(run.time[-1]))
+    inside = (run.time >= low) & (run.time <= high)
+    if not names or not inside.any():
+        known = format_range(run.time[0], run.time[-1], "s")
+        raise SimulationError(
+            f"A plot of a motion needs outputs, and samples in its window: got {names!r} from "
+            f"{format_range(low, high, 's')}, where the motion is known from {known}."
+        )
+    return inside, (low, high)
 
 
 def scale_output(run: Trajectory, name: str, inside: NDArray[np.bool_]) -> tuple[Array, str]:

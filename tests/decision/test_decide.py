@@ -208,6 +208,12 @@ BETTER = Improvement(16.0, 0.02)
             "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.3 % within errors of up to 1.9 %).",
         ),
         (
+            [BASE, design("S3", 2.99, by=Improvement(0.3, bound=inf))],
+            VerdictKind.ANSWER,
+            "S3 is as good as S1 in ride comfort (J1), and no better (difference 0.3 % within errors as large as the "
+            "values).",
+        ),
+        (
             [BASE, design("S3", 2.94, by=Improvement(2.0, 0.1, bound=1.9))],
             VerdictKind.ANSWER,
             "S3 is 2 % better than S1 in ride comfort (J1).",

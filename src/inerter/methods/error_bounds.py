@@ -97,10 +97,13 @@ def improvement_bound(
 ) -> float:
     """Largest error of an improvement [%], of values with these relative errors; nan where none is known.
 
-    Of errors that both share, the `shared_errors` of each estimate, the difference counts.
+    Infinite where the base value may be zero by its own error. Of errors that both share, the `shared_errors` of each
+    estimate, the difference counts.
     """
-    if not math.isfinite(value) or not base or not base_bound < 1.0:
+    if not math.isfinite(value) or not base or math.isnan(bound + base_bound):
         return math.nan
+    if base_bound >= 1.0:
+        return math.inf
     alone = sum(whole - size_of_effects(of) for whole, of in ((bound, shared), (base_bound, base_shared)))
     apart = {
         name: [a - b for a, b in zip_longest(shared.get(name, ()), base_shared.get(name, ()), fillvalue=0.0)]

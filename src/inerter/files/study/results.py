@@ -216,8 +216,8 @@ def _enter_improvements(data: xr.Dataset, baseline: str, of: str = "") -> None:
         effects = data[f"{of}{EFFECT}"]
         other = effects.sel(layout=baseline, drop=True)
         errors = errors + _size(effects - other) - _size(effects) - _size(other)
-    widest = 100.0 * abs(values / base) * errors / (1.0 - of_base)
-    data[f"{of}improvement_bound"][:] = widest.where(of_base < 1.0).transpose(*values.dims).values
+    widest = xr.where(of_base >= 1.0, np.inf, 100.0 * abs(values / base) * errors / (1.0 - of_base))
+    data[f"{of}improvement_bound"][:] = widest.where(np.isfinite(errors * values / base)).transpose(*values.dims).values
 
 
 def _size(effects: xr.DataArray) -> xr.DataArray:

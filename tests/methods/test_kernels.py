@@ -276,7 +276,7 @@ def test_the_cache_folder_is_where_the_environment_says(tmp_path, monkeypatch):
 def test_kernels_are_called_with_the_types_that_they_are_prepared_for(conventions):
     strut = k | c - (b | Friction(10.0))
     for car in (paper_quarter_car(strut), paper_half_car(strut, strut)):
-        for index in (*INDICES[:2], LoadCarrying(amplitude=100.0)):
+        for index in (*INDICES[:2], LoadCarrying(amplitude=100.0), LoadCarrying(amplitude=100)):
             for method in (Norm(conventions), StatisticalLinearisation(conventions)):
                 objective = method.objective(car, index)
                 point = np.array([3000.0, 100.0])

@@ -55,7 +55,7 @@ class HarmonicBalance:
     def amplitude(self) -> float:
         """Force amplitude [N]."""
         assert self.definition.amplitude is not None
-        return self.definition.amplitude
+        return float(self.definition.amplitude)  # of an integer the kernel would be compiled once more
 
     @property
     def weight(self) -> float:

@@ -23,7 +23,7 @@ from inerter.methods.excitation import ExcitedInputs
 from inerter.methods.steady_squares import jump_scatter, number_of_lines, relative_bound
 from inerter.norms.h2 import h2
 from inerter.norms.hinf import GainPeak
-from inerter.norms.response import frequency_response
+from inerter.norms.response import modal_response
 from inerter.simulation.inputs import check_holds
 from inerter.simulation.observe import trajectory_of
 from inerter.simulation.periodic_steady_state import recorded_period
@@ -100,7 +100,7 @@ def linear_model(linear: EquivalentLinearModel, speeds: Array, period: float) ->
 
 def _squares(system: LinearSystem, omega: Array) -> Array:
     """Squared gains (outputs, frequencies) from the first input of a system."""
-    return np.asarray(np.abs(frequency_response(system, omega)[:, :, 0].T) ** 2)
+    return np.asarray(np.abs(modal_response(system, omega)[:, :, 0].T) ** 2)
 
 
 @dataclass(eq=False)

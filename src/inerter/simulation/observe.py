@@ -108,8 +108,10 @@ def contact_jumps(integration: Integration, wanted: Sequence[Output]) -> Matrix:
     Both contact states are applied to the second of the two samples, which must have been kept.
     """
     system, record = integration.system, integration.record
-    after = 1 + np.flatnonzero(record.visited[1:] != record.visited[:-1])
     loose = [e for e, element in enumerate(system.nonlinear_elements) if not element.is_damped]
+    if not loose:
+        return np.zeros((len(wanted), 0))
+    after = 1 + np.flatnonzero(record.visited[1:] != record.visited[:-1])
     there, here = (integration.modes.state[record.visited[at]][:, loose] for at in (after, after - 1))
     after = after[np.any(there != here, axis=1)]
     found = np.zeros((len(wanted), after.size))
@@ -160,7 +162,7 @@ def sampled_input(
     at = table.sample_knots[samples]
     if derivative < 2:
         right, left = ((table.value, table.value_before), (table.slope, table.slope_before))[derivative]
-        found = right[at, channel]
+        found = right[:, channel][at]  # with two indices it takes several times as long
         if at[-1] == table.time.size - 1:
             found[-1] = left[-1, channel]
         return np.asarray(found)

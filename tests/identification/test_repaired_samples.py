@@ -12,8 +12,12 @@ from rigid_fits import rigid_record
 
 import inerter as it
 from inerter.identification.diagnosis import lost_samples
+from inerter.identification.experiment import experiment_of
+from inerter.identification.hypotheses import DELAY, delay
 from inerter.identification.intervals import best_fit_of
 from inerter.identification.models import MODELS
+from inerter.identification.parameter_space import space_of
+from inerter.identification.problem import FitProblem
 from inerter.identification.recording_faults import faulty_samples
 from inerter.identification.statements.causes import Suspect
 
@@ -57,6 +61,25 @@ def test_an_offset_of_the_load_cell_changes_no_values_under_replaced_samples(fau
     shifted, _, other = fitted_under(with_fault(fault, 3000.0), fault)
     assert other == pytest.approx(misfit, rel=0.02)
     assert np.all(np.abs(shifted - centred) < 0.2 * errors)
+
+
+@pytest.mark.parametrize("fault", [Suspect.SPIKES, Suspect.HELD, Suspect.LOST_SAMPLES])
+def test_replaced_samples_are_delayed_like_all_others(fault: Suspect) -> None:
+    """The bandwidth of the load cell is not stated, and a delay stands for it: it acts on the motion that is mended."""
+    experiment = experiment_of(with_fault(fault, 0.0), rigid=True)
+    lost = lost_samples([experiment])
+    (suspect,) = [h for h in (*faulty_samples([experiment]), *([] if lost is None else [lost])) if h.name is fault]
+    assumed = (delay(0.02), suspect)
+    rig = it.Rig(MODELS["friction"])
+    problem = FitProblem(rig, space_of(rig, assumed), [experiment], [], assumed=assumed)
+    values = {"b": 80.0, "f": 0.0, DELAY: 0.0}
+    (prompt,), (late,) = (
+        problem.forces(problem.space.coordinates_of({**values, DELAY: by * experiment.record.interval}))
+        for by in (0, 5)
+    )
+    middle = slice(860, 900)  # where nothing is replaced
+    assert np.std(late[middle] - prompt[middle]) > 0.01 * np.std(prompt)
+    assert np.std(late[middle] - prompt[855:895]) < 0.1 * np.std(late[middle] - prompt[middle])
 
 
 def test_faulty_samples_of_a_channel_at_a_lower_rate_are_interpolated_at_the_rate_of_the_record() -> None:

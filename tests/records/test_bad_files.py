@@ -146,8 +146,9 @@ BAD = {
     "NaN bursts": (columns(time, ("x [m]", holed(5, 6, 7, 30)), force), {}, "lacks 4 samples .* up to 3"),
     "NaN bursts that are too long": (
         columns(time, ("x [m]", holed(*range(9, 40))), force), {"gaps": "fill"}, "31 consecutive samples of"),
-    "nothing but NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "fill"}, "fewer than 4 samples have"),
-    "no stretch without NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "longest"}, "at least 4 samples"),
+    "nothing but NaN in a channel": (columns(time, x, ("F [N]", T * np.nan)), {}, "no readings: .* another channel"),
+    "nothing but NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "fill"}, "displacement has no readings"),
+    "no stretch without NaN": (columns(time, ("x [m]", T * np.nan), force), {"gaps": "longest"}, "has no readings"),
     "times that are missing": (columns(("time [s]", holed(3)), x, force), {}, "1 times are missing"),
     "a wish for gaps that is not known": (good, {"gaps": "ignore"}, "'fill', 'longest' or the longest gap"),
     "infinite force": (columns(time, x, ("F [N]", np.where(BENCH.time == T[9], np.inf, F))), {}, "first at sample 9"),

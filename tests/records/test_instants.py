@@ -73,6 +73,15 @@ def with_held_values(seed: int) -> Record:
     return replace(record, displacement=x, force=force)
 
 
+def with_repeated_samples(seed: int) -> Record:
+    """Single samples of the encoder that repeat the one before, of a recorder that misses one now and then."""
+    record = sound(seed)
+    at = instants(seed, 40)
+    x = record.displacement.copy()
+    x[at] = x[at - 1]
+    return replace(record, displacement=x)
+
+
 def joined(seed: int) -> Record:
     record, at = sound(seed), 1500 + 37 * seed
     cut = slice(at, at + 230)
@@ -103,6 +112,7 @@ FAULTS = {
     "spikes": with_spikes,
     "spikes of the encoder": with_spikes_of_the_encoder,
     "held": with_held_values,
+    "held for a sample": with_repeated_samples,
     "joined": joined,
     "hidden-jitter": jittering,
     "clock-drift": drifting,
@@ -118,6 +128,15 @@ def test_a_fault_of_the_recorder_is_found_by_its_kind(fault: str, seed: int) -> 
     found = [f for f in findings(record) if str(f.kind) == fault.partition(" ")[0]]
     assert found, kinds(record)
     assert all(len(f.sentence) < 400 and f.severity == "warning" for f in found)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_repeated_sample_is_no_spike(seed: int) -> None:
+    """Where the table moves fast, a sample that repeats the one before leaves the motion and comes back."""
+    assert kinds(with_repeated_samples(seed)) == {"held"}
+    (found,) = [f for f in findings(with_repeated_samples(seed)) if str(f.kind) == "held"]
+    assert found.numbers["longest"] == 2
+    assert "spikes" in kinds(with_spikes_of_the_encoder(seed))
 
 
 @pytest.mark.parametrize("seed", sampled(range(20), [0, 1], kept=8))

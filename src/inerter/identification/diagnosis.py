@@ -26,8 +26,9 @@ from inerter.identification.parameter_space import Space, space_of
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.recording_faults import as_measured, faulty_samples, nonlinear_load_cells, recording_faults
 from inerter.identification.residual_tests import NoiseReference, scatter_of
+from inerter.identification.scales import POWERS
 from inerter.identification.search import improve
-from inerter.identification.statements.causes import Suspect
+from inerter.identification.statements.causes import Details, Suspect
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements
 from inerter.records.dropouts import find_dropouts, insert_samples
@@ -52,7 +53,13 @@ _CLEAR = 20.0  # Fisher's ratio of a nonlinear load cell
 _LIKE = 0.5  # of the share of the best explanation of such a residual: another one
 _OF_SENSORS = (Suspect.FILTERED_FORCE, Suspect.ASYMMETRIC_GAIN, Suspect.NONLINEAR_GAIN)  # like a law of the device
 _SHAFTS = (Suspect.ELASTIC, Suspect.RIGID, Suspect.BACKLASH)  # a stiff one also changes the errors of the simulation
-_AT_BOUND, _WIDER = 1e-3, 30.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
+_UNITS = (  # column of the powers of scales, channel, true unit, unit as read, true value over reading
+    (0, "force", "kN", "N", 1e3),
+    (0, "force", "N", "kN", 1e-3),
+    (1, "displacement", "mm", "m", 1e-3),
+    (1, "displacement", "m", "mm", 1e3),
+)
+_AT_BOUND, _WIDER = 1e-3, 3000.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
 
 
 class HiddenCause(StrEnum):
@@ -257,8 +264,24 @@ def beyond_bounds(problem: FitProblem, point: Matrix) -> list[Hypothesis]:
         )
 
     device = map_elements(problem.rig.device, widen)
-    hypothesis = Hypothesis(Suspect.BEYOND_BOUNDS, device=device, details=lambda values: {"values": tuple(ends)})
-    return [hypothesis] if ends else []
+
+    def details(values: Values) -> Details:
+        return {"values": tuple(ends), "units": tuple(_units_within_bounds(space, values))}
+
+    return [Hypothesis(Suspect.BEYOND_BOUNDS, device=device, details=details)] if ends else []
+
+
+def _units_within_bounds(space: Space, values: Values) -> Iterator[tuple[str, str, str, tuple[tuple[str, float], ...]]]:
+    """Wrong units with which all values are within the bounds of their search: channel, true unit and that read."""
+    for column, role, true, read, factor in _UNITS:
+        scaled = {
+            name: values[name] * factor ** POWERS[kind.linear][column]
+            for name, kind in zip(space.names, space.kinds, strict=True)
+            if kind is not None
+        }
+        bounds = zip(space.names, space.lower, space.upper, strict=True)
+        if all(lower <= scaled[name] <= upper for name, lower, upper in bounds if name in scaled):
+            yield role, true, read, tuple(scaled.items())
 
 
 def lost_samples(experiments: Sequence[Experiment]) -> Hypothesis | None:

@@ -97,7 +97,7 @@ class FitProblem:
     def simulate(self, experiment: Experiment, coordinates: Matrix) -> SimulatedRecord | None:
         """One record as the device gives it from rest; None where the simulation fails."""
         e, values = experiment, self.space.values_by_name(coordinates)
-        for hypothesis in self.assumed:
+        for hypothesis in reversed(self.assumed):  # a delay, which is assumed first, of the motion that others mend
             e = hypothesis.change_motion(e, values)
         system = self.system(coordinates, e.record)
         run = None if system is None else e.run(system, None if self.horizon == 1.0 else self.samples(experiment))

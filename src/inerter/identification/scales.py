@@ -28,7 +28,7 @@ from inerter.records.record import Record
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS = 8
-_POWERS = {  # of the force's and of the displacement's scale in the value of an element: true over read
+POWERS = {  # of the force's and of the displacement's scale in the value of an element: true over read
     LinearRole.STIFFNESS: (1.0, -1.0),
     LinearRole.DAMPING: (1.0, -1.0),
     LinearRole.MASS: (1.0, -1.0),
@@ -102,7 +102,7 @@ def scale_effects(problem: FitProblem, optimum: BestFit, options: FitOptions) ->
     values = space.to_values(optimum.point)
     powers = np.array(
         [
-            _OF_UNITS.get(unit, (0.0, 0.0)) if kind is None else _POWERS[kind.linear]
+            _OF_UNITS.get(unit, (0.0, 0.0)) if kind is None else POWERS[kind.linear]
             for kind, unit in zip(space.kinds, space.units, strict=True)
         ]
     )

@@ -43,6 +43,12 @@ def fill_missing(
             Remedy(Action.INTERVAL),
             " instead of the times.",
         )
+    for role, mask in bad.items():
+        if mask.all():
+            raise RecordError(
+                f"{source}: the {role} has no readings: all of its {mask.size} samples are empty or not finite. Check "
+                f"the connection of the sensor, or select another channel."
+            )
     if gaps == "refuse":
         raise _refusal(source, bad)
     result, more, filled = (

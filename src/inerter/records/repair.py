@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,16 +36,20 @@ class FaultyInstants:
 def faulty_instants(record: Record) -> FaultyInstants:
     """The samples of displacement and force that contradict those before and after them."""
     held = _held_together(record)
-    found = {}
+    found: dict[str, list[Instant]] = {}
     for role in _ROLES:
         values = getattr(record, role)
         inside = mask_of(held[role], record.time.size)
         least = _least_spike(record) if role == "force" else 0.0
-        found[role] = [
-            spike
-            for spike in spike_instants(values, _WIDEST[role])
-            if abs(spike.size) > least and not inside[spike.start - 1 : spike.stop + 1].any()
-        ]
+        found[role] = []
+        for spike in spike_instants(values, _WIDEST[role]):
+            if abs(spike.size) <= least or inside[spike.start - 1 : spike.stop + 1].any():
+                continue
+            if np.ptp(values[spike.start - 1 : spike.stop]) == 0.0:  # as large as the sample before: it was repeated
+                held[role].append(replace(spike, start=spike.start - 1))
+            else:
+                found[role].append(spike)
+        held[role].sort(key=lambda instant: instant.start)
     excused = mask_of([*held["displacement"], *held["force"], *found["displacement"]], record.time.size)
     for loss in find_dropouts(record):
         excused[loss.after : loss.after + 2] = True

@@ -90,11 +90,25 @@ def _changed_device_text(d: Details) -> str:
 
 
 def _beyond_bounds_text(d: Details) -> str:
-    values = (
+    values = " and ".join(
         f"{name} is {'larger' if larger else 'smaller'} than {format_quantity(bound, unit, 3)}, a bound of the search"
         for name, unit, bound, larger in d["values"]
     )
-    return " and ".join(values)
+    units = {name: unit for name, unit, _, _ in d["values"]}
+    scaled = (
+        f"{role} in {true} that was read in {read} (with {true} "
+        + " and ".join(f"{name} is {format_quantity(v, units[name], 3)}" for name, v in within if name in units)
+        + ")"
+        for role, true, read, within in d["units"]
+    )
+    probable = " or ".join(f"a {text}" for text in scaled)
+    return f"{values}, as of {probable}" if probable else values
+
+
+def _beyond_bounds_remedy(d: Details) -> Text:
+    units = [part for role, true, _, _ in d["units"] for part in (Remedy(Action.UNIT, (role, true)), " or ")]
+    checked: Text = ("check the unit, ", *units[:-1], "; or ") if units else ()
+    return (*checked, "give the value wider bounds in the elements of the model")
 
 
 def _second_gap_text(d: Details) -> str:
@@ -113,10 +127,10 @@ class Suspect(StrEnum):
     """Name of a possible cause, with its sentence and its remedy: texts, or functions that format them."""
 
     _sentence: str | Callable[[Details], str]
-    _remedy: str | Text | Callable[[Details], str]
+    _remedy: str | Text | Callable[[Details], str | Text]
 
     def __new__(
-        cls, key: str, sentence: str | Callable[[Details], str], remedy: str | Text | Callable[[Details], str]
+        cls, key: str, sentence: str | Callable[[Details], str], remedy: str | Text | Callable[[Details], str | Text]
     ) -> Self:
         suspect = str.__new__(cls, key)
         suspect._value_, suspect._sentence, suspect._remedy = key, sentence, remedy
@@ -292,7 +306,7 @@ class Suspect(StrEnum):
     BEYOND_BOUNDS = (
         "value beyond the bounds",
         _beyond_bounds_text,
-        "give the value wider bounds in the elements of the model",
+        _beyond_bounds_remedy,
     )
 
     def sentence(self, details: Details) -> str:

@@ -260,6 +260,10 @@ SENSORS = {
         r"displacement of .* is stated as 1 m r\.m\.s\., more than the displacement itself, .*unit",
     ),
     "force_noise": (1e5, r"noise of the force of .* is stated as .* r\.m\.s\., more than the force itself, .*unit"),
+    "fixture_mass": (
+        1e9,
+        r"A fixture of 1e\+09 kg between load cell and device takes .* the load cell reads .* unit of the",
+    ),
     "force_bandwidth": (1e-300, r"A load cell of 1e-300 Hz reads nothing of .*, which lasts 1 s\. Check the unit"),
 }
 

@@ -34,6 +34,7 @@ _END, _SHORT = 16, 0.15  # samples next to an end, at least, where filter and sp
 _FEWEST = 50  # samples that a fit requires
 _FASTEST_CELL = 600.0  # of the sampling rate: bandwidth of a load cell, whose equations are solved in steps of its own
 _SLOWEST_CELL = 1e-2  # periods of its bandwidth in a record, at least
+_HEAVIEST = 1e3  # of the measured force: the inertia of a fixture, which the device would cancel to a thousandth
 _DELAYS, _DELAYED_SAMPLES = 6, 100_000  # of which the motion is kept, as for the differences of a fit; at most
 _CERTAIN = 10.0  # times the noise of the acceleration, which is larger at the ends of a record
 _KNOTS, _MOST_KNOTS = 20.0, 2  # of the motion in its shortest period, at least; of an interval, as a power of 2 ...
@@ -191,6 +192,7 @@ def experiment_of(
         raise IdentificationError(f"The force of {record.source!r} is constant, so no parameter is identifiable.")
     _check_sensors(record)
     motion = smooth_displacement(record, bandwidth)
+    _check_fixture(record, motion)
     interval, count = record.interval, record.time.size
     try:
         table = _table(motion)
@@ -243,6 +245,18 @@ def _check_sensors(record: Record) -> None:
                 f"The noise of the {role} of {record.source!r} is stated as {format_quantity(noise, unit)} r.m.s., "
                 f"more than the {role} itself, {format_quantity(size, unit)} r.m.s. Check its unit."
             )
+
+
+def _check_fixture(record: Record, motion: Motion) -> None:
+    """Raise `IdentificationError` for a fixture whose inertia is far more than the load cell reads."""
+    inertia = (record.fixture_mass or 0.0) * float(np.std(motion.acceleration))
+    size = float(np.std(record.force))
+    if inertia > _HEAVIEST * size:
+        raise IdentificationError(
+            f"A fixture of {format_quantity(record.fixture_mass or 0.0, 'kg')} between load cell and device takes "
+            f"{format_quantity(inertia, 'N')} r.m.s. in {record.source!r}, but the load cell reads "
+            f"{format_quantity(size, 'N')} r.m.s. Check the unit of the mass."
+        )
 
 
 def _begins_at_rest(motion: Motion) -> bool:

@@ -22,7 +22,6 @@ from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, with_decisive_method
 from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
-from inerter.report.verdicts import best_layouts
 from inerter.statements import Severity
 from inerter.table import MISSING, Column, Row, Table, cells
 from inerter.units import quote_value
@@ -184,6 +183,8 @@ class Budgets(Task[BudgetAnswer]):
 
     def sentences(self, results: TaskResults[BudgetAnswer]) -> Iterator[str]:
         """Ranges of each element in which the best layouts outperform the baseline, as sentences."""
+        from inerter.report.verdicts import best_layouts  # noqa: PLC0415 - heavy
+
         study, data = results.study, results.data
         budgets = [found for found in results.answers if not found.condition]
         best = {name for index in study.indices for name in best_layouts(data, index)} if budgets else set()

@@ -73,7 +73,10 @@ OTHER_EXCEPTIONS = {
     "no axes": (lambda: it.plot_bode(CAR, BODE, axes=[]), "need two axes, got 0"),
     "response": (lambda: it.plot_step_response(CAR, None), "`response` must be two strings, got None"),
     "duration": (lambda: it.plot_step_response(CAR, BODE, duration=-1.0), "duration must be a positive number of s"),
-    "window": (lambda: it.plot_trajectory(RUN, "tyre_load", window=0.1), "`window` must be two numbers or None"),
+    "window": (
+        lambda: it.plot_trajectory(RUN, "tyre_load", window=0.1),
+        "`window` must be two numbers in SI units or None",
+    ),
     "empty window": (lambda: it.plot_loop(RUN, "tyre_load", "strut_force", window=(8, 9)), "known from 0 to 0.1 s"),
     "outputs": (lambda: it.plot_trajectory(RUN, None), "`outputs` must be a list of strings or a string, got None"),
     "no index": (lambda: it.evaluate_many(CAR, [], {}, it.Norm()), "at least one index"),

@@ -166,7 +166,7 @@ _WORDS = {
     "None": "None",
     "Callable[[float], None]": "a function",
     "Sequence[str]": "a list of strings",
-    "tuple[float, float]": "two numbers",
+    "tuple[float, float]": "two numbers in SI units",
     "tuple[str, str]": "two strings",
 }
 _OBJECTS = frozenset(

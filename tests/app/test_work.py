@@ -153,6 +153,35 @@ def count(request: Any, folder: Any, tell: Any) -> Any:
     return {"counted": 3}
 
 
+_OF_S3 = {"layout": "S3", "values": {}}
+TITLES: list[tuple[dict[str, Any], str]] = [
+    ({"kind": "run"}, "Run the whole study"),
+    ({"kind": "optimise", "layouts": ["S1", "S3"], "indices": ["J1"]}, "Best J1 of S1 and S3"),
+    ({"kind": "sweep", "sweep": {"k": {"from": "1 N/m", "to": "9 N/m"}}}, "Sweep of k from 1 N/m to 9 N/m"),
+    ({"kind": "sweep", "sweep": {"k": {"factor": 2}, "b": ["1 kg", "2 kg"]}}, "Sweep of k and b"),
+    ({"kind": "sweep"}, "Sweep"),
+    ({"kind": "front", "indices": ["J1", "J3", "J5"]}, "Trade-off front of J1, J3 and J5"),
+    ({"kind": "margins", "design": _OF_S3}, "Break-even values of S3"),
+    ({"kind": "margins", "layout": "S3"}, "Break-even values of S3"),
+    ({"kind": "report", "designs": [_OF_S3, {"layout": "S1", "values": {}}]}, "Report of S3"),
+]
+
+
+@pytest.mark.parametrize(("asked", "subject"), TITLES, ids=str)
+def test_a_job_is_called_by_what_it_is_about(server: Any, asked: dict[str, Any], subject: str) -> None:
+    kind = asked["kind"]
+    for title, whole in (("A car", f"{subject}: A car"), ("", subject), (5, subject)):
+        assert server.jobs.add(kind, {**asked, "study": {"title": title}}).title == whole
+    assert server.jobs.add(kind, asked).title == subject
+    assert server.jobs.add(kind, asked, "My own").title == "My own"
+
+
+def test_a_kind_that_a_person_may_begin_says_what_it_does(client: TestClient) -> None:
+    told = {kind["key"]: kind for kind in client.get("/api/about").json()["work"]}
+    assert {key for key, kind in told.items() if kind["description"]} == {"run", "sweep", "front", "search"}
+    assert all(kind["description"].endswith(".") for kind in told.values() if kind["lacking"])
+
+
 def test_a_fault_is_told_and_the_queue_goes_on(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(KINDS, "fault", WorkKind("fault", "A fault", (), "app.test_work:nothing_of_that_name"))
     told = ask(client, "work", kind="fault", wait=30)

@@ -23,8 +23,7 @@ export async function optimise(store, api, asked) {
   const body = { study, layouts, indices: [index], method, methods: [method] };
   try {
     if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
-      const title = `${layouts.join(", ")} of ${study.title ?? "study"}: best ${index}`;
-      const id = await begin(store, api, { kind: "optimise", title, ...body });
+      const id = await begin(store, api, { kind: "optimise", ...body });
       void ended(store, id).then((job) => {
         if (job?.result && store.get().history.present.study === study)
           store.say(takeOptima(store, job.result.designs, null, study), "taken");
@@ -267,7 +266,7 @@ function unidentified({ parameters }) {
 export const withheld = ({ parameters }) =>
   `There is no device to take: the fit withholds ${Object.keys(parameters ?? {}).join(", ") || "its values"}.`;
 
-/** @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body */
+/** @param {Store} store @param {Api} api @param {{kind: string, [key: string]: any}} body */
 export async function begin(store, api, body) {
   const job = await api.post("work", body);
   store.dispatch({ type: "worked", job: jobOf(job) });
@@ -276,7 +275,7 @@ export async function begin(store, api, body) {
 }
 
 /** Begins work; gives the sentence why it cannot be begun, empty where it is begun.
- * @param {Store} store @param {Api} api @param {{kind: string, title: string, [key: string]: any}} body
+ * @param {Store} store @param {Api} api @param {{kind: string, [key: string]: any}} body
  * @returns {Promise<string>} */
 export const tryToBegin = (store, api, body) => begin(store, api, body).then(() => "", ({ message }) => message);
 

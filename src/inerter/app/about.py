@@ -74,7 +74,7 @@ def about() -> dict[str, Any]:
         "conventions": list(CONVENTIONS),
         "panels": [{"key": panel.key, "title": panel.title} for panel in PANELS.values()],
         "work": [
-            {"key": kind.key, "title": kind.title, "keys": list(kind.keys), "resumes": kind.resumes}
+            {name: getattr(kind, name) for name in ("key", "title", "keys", "resumes", "description", "lacking")}
             for kind in KINDS.values()
         ],
         "exports": [

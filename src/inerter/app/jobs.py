@@ -87,7 +87,7 @@ class Jobs:
         if len(self.known) >= _MOST:
             raise Refusal(400, f"{_MOST} jobs are waiting. Stop some of them first.")
         name = token_hex(8)
-        job = Job(name, kind, title or KINDS[kind].title, self.root / name)
+        job = Job(name, kind, title or KINDS[kind].title_of(request), self.root / name)
         job.folder.mkdir(parents=True)
         (job.folder / REQUEST).write_bytes(encode_json({**request, "kind": kind, "title": job.title, **_OURS}))
         self.known[name] = job

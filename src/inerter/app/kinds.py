@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Protocol
+
+from inerter.formatting import format_list
 
 RESULTS = "results"  # the folder of results in that of the work
 
@@ -35,12 +37,16 @@ def tell_compiling(tell: Tell) -> Callable[[str, int, int], None]:
     return compiling
 
 
+Request = Mapping[str, Any]
+
+
 @dataclass(frozen=True)
 class WorkKind:
     """Job type: title, keys of its request in addition to `study`, and the function that computes it.
 
     That takes the request, the folder of the work, and how to tell how far it is. A job that `resumes` continues from
-    what it left in its folder.
+    what it left in its folder. One that a person may begin has a `description`, and where a study can lack what it is
+    about, the sentence on that. `subject` says what a request is about.
     """
 
     key: str
@@ -48,34 +54,99 @@ class WorkKind:
     keys: tuple[str, ...]
     home: str
     resumes: bool = False
+    description: str = ""
+    lacking: str = ""
+    subject: Callable[[Request], str] | None = None
+
+    def title_of(self, request: Request) -> str:
+        """Title of a job: what its request is about, and the title of the study."""
+        own = self.subject(request) if self.subject else ""
+        title = request.get("study", {}).get("title")
+        return f"{own or self.title}: {title}" if isinstance(title, str) and title else own or self.title
+
+
+def _best_values(request: Request) -> str:
+    layouts, indices = request.get("layouts"), request.get("indices")
+    return f"Best {format_list(indices)} of {format_list(layouts)}" if layouts and indices else ""
+
+
+def _sweep(request: Request) -> str:
+    swept = [
+        f"{of} from {how['from']} to {how['to']}" if isinstance(how, Mapping) and {"from", "to"} <= set(how) else of
+        for of, how in (request.get("sweep") or {}).items()
+    ]
+    return f"Sweep of {format_list(swept)}" if swept else ""
+
+
+def _front(request: Request) -> str:
+    indices = request.get("indices")
+    return f"Trade-off front of {format_list(indices)}" if indices else ""
+
+
+def _margins(request: Request) -> str:
+    layout = (request.get("design") or request).get("layout")
+    return f"Break-even values of {layout}" if layout else ""
+
+
+def _report(request: Request) -> str:
+    designs = request.get("designs")
+    return f"Report of {designs[0]['layout']}" if designs else ""
 
 
 _STUDIED, _DESIGNS = "inerter.app.study_jobs", ("indices", "methods")
 KINDS = {
     kind.key: kind
     for kind in (
-        WorkKind("optimise", "The best values", ("layouts", "method", *_DESIGNS), f"{_STUDIED}:optimise"),
-        WorkKind("run", "The whole study, with its report", (), f"{_STUDIED}:run"),
-        WorkKind("report", "The report as one page", ("designs",), f"{_STUDIED}:report"),
+        WorkKind(
+            "optimise",
+            "The best values",
+            ("layouts", "method", *_DESIGNS),
+            f"{_STUDIED}:optimise",
+            subject=_best_values,
+        ),
+        WorkKind(
+            "run",
+            "Run the whole study",
+            (),
+            f"{_STUDIED}:run",
+            description="As inerter run does: all layouts and indices, with report, tables and figures.",
+        ),
+        WorkKind("report", "The report as one page", ("designs",), f"{_STUDIED}:report", subject=_report),
         WorkKind(
             "margins",
             "Break-even values, other speeds, tolerances",
             ("design", "layout", "values", "baseline", "index", "methods"),
             f"{_STUDIED}:margins",
+            subject=_margins,
         ),
-        WorkKind("sweep", "The best designs over swept values", ("sweep", "layouts", "indices"), f"{_STUDIED}:sweep"),
+        WorkKind(
+            "sweep",
+            "Sweep",
+            ("sweep", "layouts", "indices"),
+            f"{_STUDIED}:sweep",
+            description="The best designs over one number of the study.",
+            lacking="There is no fixed value to sweep.",
+            subject=_sweep,
+        ),
         WorkKind(
             "front",
-            "Trade-offs between two or three indices",
+            "Trade-off front",
             ("layouts", "indices", "method", "points"),
             "inerter.app.fronts:front",
+            description="The designs of which none is better by two or three indices: each point can be taken into "
+            "the editor.",
+            lacking="No two indices are known.",
+            subject=_front,
         ),
         WorkKind(
             "search",
-            "The best of all networks that a free network may be",
+            "Search for the best network",
             ("layouts", "indices"),
             "inerter.app.searches:search",
             resumes=True,
+            description="Every network that a free network may be, ranked; of two or three indices the front over all "
+            "networks. The ranking fills while it goes on; a search that is stopped keeps it, and can be resumed.",
+            lacking="No layout has a free network.",
         ),
         WorkKind("compare", "Two to four designs side by side", ("designs", *_DESIGNS), f"{_STUDIED}:compare"),
         WorkKind(

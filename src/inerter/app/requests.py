@@ -80,8 +80,7 @@ async def _add_work(server: Server, request: Request, body: bodies.WorkRequest) 
         raise Refusal(400, f"Unknown kind of job {body.kind!r}; available: {', '.join(KINDS)}.")
     asked = body.model_dump(exclude_unset=True, exclude={"wait", "title", "kind"})
     asked["records"] = [str(server.records.get(record)) for record in body.records]
-    swept = f"Sweep of {' and '.join(body.sweep)}" if body.kind == "sweep" and body.sweep else ""
-    job = server.jobs.add(body.kind, asked, body.title or swept)
+    job = server.jobs.add(body.kind, asked, body.title)
     if body.wait:
         with suppress(TimeoutError):
             await asyncio.wait_for(job.over.wait(), body.wait)

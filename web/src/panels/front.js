@@ -52,16 +52,8 @@ export function FrontForm({ store }) {
 }
 
 /** @param {FormData} form */
-const chosenIndices = (form) => form.getAll("index").filter((index) => index !== "").map(String);
-
-/** @param {State} _ @param {FormData} form */
-export const frontBody = (_, form) => ({ indices: chosenIndices(form), points: Number(form.get("points")) });
-
-/** @param {FormData} form */
-export const frontTitle = (form) => `Trade-off front of ${listed(chosenIndices(form))}`;
-
-/** @param {string[]} names */
-const listed = (names) => `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+export const frontBody = (form) => ({ indices: form.getAll("index").filter((index) => index !== ""),
+  points: Number(form.get("points")) });
 
 /** @param {{store: Store, api: Api, job: Job}} props */
 export function FrontResult({ store, api, job }) {

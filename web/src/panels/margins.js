@@ -28,8 +28,7 @@ const NAME = "margins";
 
 /** Begins the job; its result is the answer to what is asked now. @param {Store} store @param {Api} api */
 const compute = (store, api) => seek(store, NAME, {}, async ({ body }) => {
-  const title = `Break-even values of ${body.design.layout}: ${body.study.title ?? "study"}`;
-  const job = await ended(store, await begin(store, api, { kind: NAME, title, ...body }));
+  const job = await ended(store, await begin(store, api, { kind: NAME, ...body }));
   if (!job?.result) throw new Error(job?.sentence || "Stopped.");
   return job.result;
 });

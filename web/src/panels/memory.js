@@ -74,17 +74,17 @@ export function Menu({ store, api }) {
 /** Begins the run of the whole study, a job. @param {Store} store @param {Api} api */
 async function runStudy(store, api) {
   const { study } = store.get().history.present;
-  await begin(store, api, { kind: "run", title: `Report: ${study.title ?? "study"}`, study });
+  await begin(store, api, { kind: "run", study });
   store.look({ tab: "work" });
 }
 
 /** Saves the report of the design that is edited and of the baseline, once its job has ended.
  * @param {Store} store @param {Api} api @param {Document} document @param {string} called */
 async function saveReport(store, api, document, called) {
-  const { study, layout } = document;
+  const { study } = document;
   store.say("The report is being made: see Jobs.", "report");
-  const job = await ended(store, await begin(store, api, { kind: "report", study, designs: shownDesigns(document),
-    title: `Report of ${layout}: ${study.title ?? "study"}` }));
+  const job = await ended(store, await begin(store, api, { kind: "report", study,
+    designs: shownDesigns(document) }));
   store.dispatch({ type: "closed", about: "report" });
   if (!job?.result) throw new Error(job?.sentence || "The report was stopped.");
   download(await api.blob(`work/${job.id}/files/${job.result.file}`), called);

@@ -147,8 +147,8 @@ function FreeNetwork({ store, name }) {
   })}</fieldset>`;
 }
 
-/** @param {State} _ @param {FormData} form */
-export const searchBody = (_, form) => ({ layouts: form.getAll("layout"), indices: form.getAll("index") });
+/** @param {FormData} form */
+export const searchBody = (form) => ({ layouts: form.getAll("layout"), indices: form.getAll("index") });
 
 /** The best networks, also of a search that goes on or was stopped.
  * @param {{store: Store, api: Api, job: Job}} props */

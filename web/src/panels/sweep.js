@@ -22,9 +22,6 @@ import { Files } from "./files.js";
 
 const TAKE = "take it into the editor";
 
-/** @param {FormData} form */
-export const sweepTitle = (form) => `Sweep of ${form.get("of")} from ${form.get("from")} to ${form.get("to")}`;
-
 /** @param {{store: Store, api: Api, job: Job}} props */
 export function SweepResult({ store, api, job }) {
   const { result } = job;

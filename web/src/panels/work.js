@@ -1,10 +1,10 @@
-// Long work: one queue, and a row for each kind of it with its form and what is shown of its result.
+// Long work: one queue, and for each kind that the library declares its form and what is shown of its result.
 
 import { signed } from "./answers.js";
 import { Files } from "./files.js";
-import { FrontForm, FrontResult, frontBody, frontIndices, frontTitle } from "./front.js";
+import { FrontForm, FrontResult, frontBody, frontIndices } from "./front.js";
 import { SearchForm, SearchResult, AddFreeNetwork, searchBody } from "./search.js";
-import { SweepResult, sweepTitle } from "./sweep.js";
+import { SweepResult } from "./sweep.js";
 import { Select, Table, formHandler, showNewest } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { placed, printed, quantity, scaled, takenApart, unitFor, valuesIn } from "../state/scale.js";
@@ -18,43 +18,39 @@ import { membersOf, resume, stop, takeAndTell, tryToBegin } from "../working.js"
 /** @import { Store, State, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 
-/** A kind of long work: what it needs beside the study, its form, and its result.
- * `name` is that of one of its jobs; `lacks` says what the study has not that it needs, and `Remedy` is buttons that
- * give it.
- * @typedef {{kind: string, title: string, sentence: string, body: (state: State, form: FormData) => object,
- * name?: (form: FormData) => string, lacks?: (state: State) => string | null, Form?: any, Result?: any,
- * Remedy?: any}} Kind */
+/** A kind of long work as the library declares it: one that a person may begin has a description.
+ * @typedef {{key: string, title: string, resumes: boolean, description: string, lacking: string}} Kind */
+/** What is shown of a kind: the form of what it needs beside the study, with its body; its result; `lacks` whether the
+ * study has nothing for it, and `Remedy` buttons that add that.
+ * @typedef {{Form?: any, body?: (form: FormData) => object, Result?: any, lacks?: (state: State) => boolean,
+ * Remedy?: any}} View */
 
-/** @type {Kind[]} */
-const KINDS = [
-  { kind: "run", title: "Run the whole study", body: () => ({}), Result: RunResult,
-    sentence: "As inerter run does: all layouts and indices, with report, tables and figures." },
-  { kind: "sweep", title: "Sweep", body: sweepBody, Form: SweepForm, Result: SweepResult, name: sweepTitle,
-    lacks: (state) => (sweepable(state).length > 0 ? null : "There is no fixed value to sweep."),
-    sentence: "The best designs over one number of the study." },
-  { kind: "front", title: "Trade-off front", body: frontBody, Form: FrontForm, Result: FrontResult, name: frontTitle,
-    lacks: (state) => (frontIndices(state).length > 1 ? null : "No two indices are known."),
-    sentence: "The designs of which none is better by both indices: each point can be taken into the editor." },
-  { kind: "search", title: "Search for the best network", body: searchBody, Form: SearchForm, Result: SearchResult,
-    lacks: (state) => (searchedLayouts(state).length > 0 ? null : "No layout has a free network."),
-    Remedy: AddFreeNetwork,
-    sentence: "Every network that a free network may be, ranked; of two or three indices the front over all networks. "
-      + "The ranking fills while it goes on; a search that is stopped keeps it, and can be resumed." },
-];
+/** @type {{[kind: string]: View}} */
+const VIEWS = {
+  run: { Result: RunResult },
+  sweep: { Form: SweepForm, body: sweepBody, Result: SweepResult, lacks: (state) => sweepable(state).length === 0 },
+  front: { Form: FrontForm, body: frontBody, Result: FrontResult, lacks: (state) => frontIndices(state).length < 2 },
+  search: { Form: SearchForm, body: searchBody, Result: SearchResult,
+    lacks: (state) => searchedLayouts(state).length === 0, Remedy: AddFreeNetwork },
+  optimise: { Result: OptimumResult },
+  margins: { Result: MarginsResult },
+};
 
 /** @param {{store: Store, api: Api}} props */
 export function WorkPanel({ store, api }) {
   const state = store.get();
   const jobs = Object.values(state.work).toReversed();
-  const known = new Set((state.about?.work ?? []).map((/** @type {any} */ each) => each.key));
   return html`<div class="work">
-    ${KINDS.filter(({ kind }) => known.size === 0 || known.has(kind)).map((kind) =>
-      html`<${Begin} key=${kind.kind} store=${store} api=${api} kind=${kind} />`)}
+    ${kindsOf(state).filter(({ description }) => description !== "").map((kind) =>
+      html`<${Begin} key=${kind.key} store=${store} api=${api} kind=${kind} />`)}
     <h3>Under way and done</h3>
     ${jobs.length === 0 && html`<p class="quiet">Nothing yet.</p>`}
     <ul class="jobs">${jobs.map((job) => html`<${JobRow} key=${job.id} store=${store} api=${api} job=${job} />`)}</ul>
   </div>`;
 }
+
+/** @param {State} state @returns {Kind[]} */
+const kindsOf = ({ about }) => about?.work ?? [];
 
 /** Long work begins with its button: Enter in a field only takes over what was typed. @param {KeyboardEvent} event */
 const notByEnter = (event) =>
@@ -65,21 +61,20 @@ function Begin({ store, api, kind }) {
   const [told, setTold] = useState("");
   const state = store.get();
   const { study, layout } = state.history.present;
-  const lacking = kind.lacks?.(state);
-  const isNext = kind.Remedy && state.view.tall && isSearched(state, layout); // what is to be done with a free network
+  const { Form, body, lacks, Remedy } = VIEWS[kind.key] ?? {};
+  const isNext = Remedy && state.view.tall && isSearched(state, layout); // what is to be done with a free network
   return html`<form class="begin" onKeyDown=${notByEnter} onSubmit=${formHandler(async (form) => {
-    const title = `${kind.name?.(form) ?? kind.title}: ${study.title ?? "study"}`;
-    const told = await tryToBegin(store, api, { kind: kind.kind, title, study, ...kind.body(state, form) });
+    const told = await tryToBegin(store, api, { kind: kind.key, study, ...body?.(form) });
     setTold(told);
     if (told) return;
     store.look({ tall: true });
     showNewest(".jobs .job");
   })}>
     <h3>${kind.title}</h3>
-    <p class="quiet">${kind.sentence}</p>
-    ${lacking ? html`<p class="row"><span class="quiet">${lacking}</span>
-        ${kind.Remedy && html`<${kind.Remedy} store=${store} />`}</p>`
-      : html`<div class="row">${kind.Form && html`<${kind.Form} store=${store} />`}
+    <p class="quiet">${kind.description}</p>
+    ${lacks?.(state) ? html`<p class="row"><span class="quiet">${kind.lacking}</span>
+        ${Remedy && html`<${Remedy} store=${store} />`}</p>`
+      : html`<div class="row">${Form && html`<${Form} store=${store} />`}
         <button class=${isNext ? "main" : "edged"}>Begin</button></div>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
   </form>`;
@@ -90,11 +85,10 @@ export const RUNNING = ["waiting", "running"];
 /** What the work is, the button that ends it, and how far it is: of what moves in large steps the time moves.
  * @param {{store: Store, api: Api, job: Job}} props */
 export function JobHead({ store, api, job: { id, title, kind, state, share, begun } }) {
-  const { about } = store.get();
   const resumes = ["stopped", "failed"].includes(state)
-    && (about?.work ?? []).some((/** @type {any} */ each) => each.key === kind && each.resumes);
+    && kindsOf(store.get()).some((each) => each.key === kind && each.resumes);
   const running = RUNNING.includes(state);
-  return html`<div class="row"><b>${title || kind}</b> <span class="state">${state}</span>
+  return html`<div class="row"><b>${title}</b> <span class="state">${state}</span>
       ${resumes && html`<button type="button" onClick=${() => resume(store, api, id)}>Resume</button>`}
       <button type="button" onClick=${() => stop(store, api, id)}>${running ? "Stop" : "Forget"}</button></div>
     ${running && html`<p class="row progress">
@@ -104,8 +98,7 @@ export function JobHead({ store, api, job: { id, title, kind, state, share, begu
 
 /** @param {{store: Store, api: Api, job: Job}} props */
 function JobRow({ store, api, job }) {
-  const Result = KINDS.find(({ kind }) => kind === job.kind)?.Result
-    ?? { optimise: OptimumResult, margins: MarginsResult }[job.kind];
+  const Result = VIEWS[job.kind]?.Result;
   const failed = job.state === "failed";
   return html`<li class="job" data-state=${job.state}>
     <${JobHead} store=${store} api=${api} job=${job} />
@@ -188,8 +181,8 @@ function SweepForm({ store }) {
     <label>points <input name="points" type="number" min="2" max="100000" defaultValue="16" /></label>`;
 }
 
-/** @param {State} _ @param {FormData} form */
-function sweepBody(_, form) {
+/** @param {FormData} form */
+function sweepBody(form) {
   const [of, from, to, points] = ["of", "from", "to", "points"].map((name) => String(form.get(name) ?? ""));
   return { sweep: { [of]: { from, to, points: Number(points) } } };
 }

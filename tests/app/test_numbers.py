@@ -29,6 +29,7 @@ from inerter.app.answers import answer_panel
 from inerter.app.designs import designs_of
 from inerter.app.documents import study_from
 from inerter.app.fixed_designs import with_fixed_values
+from inerter.app.fronts import _change
 from inerter.figures.simulation import draw_simulation
 from inerter.files.common.toml import as_toml
 from inerter.files.simulation.loading import load_simulation
@@ -331,6 +332,42 @@ def test_a_design_of_another_study_is_judged_on_the_road_of_this_one(client: Tes
     assert "a design of another study" in refused.json()["sentence"]
 
 
+def test_a_point_of_a_front_is_compared_with_the_knee_that_it_could_be(client: TestClient) -> None:
+    """With that of its own front; the knee itself with that of the baseline, which has no other."""
+    body = {"kind": "front", "study": DOCUMENT, "points": 4, "wait": 30}
+    fronts = {front["layout"]: front for front in ask(client, "work", **body)["result"]["fronts"]}
+    for layout, front in fronts.items():
+        for i, point in enumerate(front["points"]):
+            told = point["reference"]
+            of = fronts["S1" if i == front["knee"] else layout]
+            if (layout, i) == ("S1", of["knee"]):
+                assert told is None
+                continue
+            assert (told["layout"], told["point"]) == (of["layout"], of["knee"])
+            assert told["sentence"].startswith(f"Relative to {of['layout']} at its knee: ")
+            knee = of["points"][of["knee"]]["values"]
+            for index, value in point["values"].items():
+                change = 100.0 * (value / knee[index] - 1.0)
+                (share, way) = re.search(rf"([0-9.]+) % (lower|higher) {index}", told["sentence"]).groups()
+                assert float(share) == pytest.approx(abs(change), rel=0.06)
+                assert way == ("lower" if change < 0.0 else "higher")
+
+
+@pytest.mark.parametrize(
+    ("value", "other", "told"),
+    [
+        (1.2, 1.0, "20 % higher J1"),
+        (0.9991, 1.0, "0.09 % lower J1"),
+        (1.00001, 1.0, "equal J1"),
+        (float("nan"), 1.0, "J1 is not comparable"),
+        (float("inf"), 1.0, "J1 is not comparable"),
+        (1.0, 0.0, "J1 is not comparable"),
+    ],
+)
+def test_a_difference_of_an_index_is_told_in_words(value: float, other: float, told: str) -> None:
+    assert _change("J1", value, other) == told
+
+
 def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient) -> None:
     body = {"kind": "front", "study": DOCUMENT, "layouts": ["S3"], "points": 4, "wait": 30}
     work = ask(client, "work", **body)
@@ -339,6 +376,9 @@ def test_fronts_are_those_of_python_and_their_points_designs(client: TestClient)
     (front,) = told["fronts"]
     assert [list(point["values"].values()) for point in front["points"]] == found.values.tolist()
     assert front["knee"] == found.knee
+    assert [point["reference"] and point["reference"]["point"] for point in front["points"]] == [
+        None if i == found.knee else found.knee for i in range(4)
+    ]
     table = client.get(f"/api/work/{work['id']}/files/fronts.csv").text
     rows = [[row["J1 [m/s^2]"], row["J3 [N]"]] for row in csv.DictReader(io.StringIO(table))]
     assert [[float(value) for value in row] for row in rows] == found.values.tolist()
@@ -384,6 +424,49 @@ def test_a_comparison_is_no_better_than_the_worst_of_it(client: TestClient) -> N
         worst = "ok" if statuses[0][row] == statuses[1][row] == "ok" else "inaccurate"
         assert result["improvement_status"] == worst
         assert any(design["results"][row]["best"] for design in told) == (worst == "ok")
+
+
+@pytest.mark.parametrize(
+    ("asked", "method"),
+    [
+        ({}, "norm"),
+        ({"methods": ["expected-value"]}, "norm"),
+        ({"methods": ["expected-value", "statistical-linearisation"]}, "statistical-linearisation"),
+        ({"methods": ["statistical-linearisation"], "method": "norm"}, "norm"),
+    ],
+    ids=str,
+)
+def test_a_tolerance_is_by_the_method_that_judges_unless_it_averages(
+    client: TestClient, asked: dict[str, Any], method: str
+) -> None:
+    design = {"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}
+    body = {"study": DOCUMENT, "design": design, "index": "J1", "spread": {"c": 0.1}, "samples": 16}
+    assert ask(client, "panel/tolerance", **body, **asked)["method"] == method
+
+
+@pytest.mark.parametrize("method", it.METHODS)
+def test_a_tolerance_judges_as_many_designs_as_a_wait_allows(method: str) -> None:
+    most = 10_000 if method == "norm" else 2500
+    for n_scattering in range(1, 200):
+        samples = answers._affordable_samples(method, n_scattering)
+        designs = samples * (2 + n_scattering)
+        assert samples in (64, 128, 256, 512, 1024)
+        assert designs <= most or samples == 64
+        assert 2 * designs > most or samples == 1024
+
+
+@pytest.mark.parametrize(
+    ("methods", "method"),
+    [(["norm"], "norm"), (["statistical-linearisation"], "statistical-linearisation")],
+)
+def test_a_break_even_value_is_by_the_method_that_judges_if_it_sees_friction(
+    client: TestClient, methods: list[str], method: str
+) -> None:
+    values = {"S1": {"c": 3000.0}, "S3": {"c": 3000.0, "b": 60.0}}
+    body = {"layout": "S3", "values": values, "index": "J1", "parameter": "k", "methods": methods}
+    assert ask(client, "panel/budget", study=DOCUMENT, **body)["method"] == method
+    document = changed(study={"evaluate": ["norm", "statistical-linearisation"]})
+    assert ask(client, "panel/budget", study=document, **body)["method"] == "statistical-linearisation"
 
 
 @pytest.mark.parametrize(("method", "spread", "doubt"), [("norm", "f", True), ("norm", "c", False)])

@@ -1,6 +1,6 @@
 // Which questions the state asks: a row a panel. A question is null where there is nothing to ask yet.
 
-import { isQuick, isSearched, judging, layoutsWith, numbersOf } from "./library.js";
+import { isSearched, judging, layoutsWith, numbersOf } from "./library.js";
 import { panelOf, shownOf, soughtIn } from "./state/answers.js";
 import { entryAt, indicesIn, isBlank, isRange, mapValues, own } from "./state/document.js";
 import { takenApart } from "./state/scale.js";
@@ -210,40 +210,9 @@ export const soughtAnswer = (state, panel) => soughtIn(state.answers[panel], sou
 export function soughtOf(state, panel) {
   const parameters = state.sought[panel];
   if (parameters === undefined) return null;
-  return keyed({ panel, path: `panel/${panel}`, body: SOUGHT[panel](state, state.history.present, parameters) });
-}
-
-/** @type {{[panel: string]: (state: State, document: Document, parameters: any) => any}} */
-const SOUGHT = {
-  margins: (state, document, asked) =>
-    ({ ...presentDesign(document), baseline: baselineOf(document), index: goalOf(state),
-      methods: methodNames(state), ...asked }),
-  budget: (state, document, asked) =>
-    ({ ...presentDesign(document), baseline: baselineOf(document), ...asked, ...seeing(state) }),
-  tolerance: (state, document, asked) =>
-    ({ ...presentDesign(document), ...asked, ...effortOf(state, Object.keys(asked.spread).length) }),
-};
-
-/** The method by which the page judges, where it sees what a budget is about; else that of the study.
- * @param {State} state */
-function seeing(state) {
-  const method = judging(state);
-  return !method || isQuick(method) ? {} : { method: method.name };
-}
-
-const DESIGNS = 10_000; // that are judged while one waits, by norms, and a quarter of them by what takes longer
-const [FEWEST, MOST] = [64, 1024]; // samples, a power of two
-
-/** The method that the page judges by, unless it averages over roads, and as many samples as a wait allows.
- * @param {State} state @param {number} scattering how many values scatter */
-function effortOf(state, scattering) {
-  const method = judging(state);
-  const quick = !method || method.averages || isQuick(method);
-  const samples = 2 ** Math.floor(Math.log2((quick ? DESIGNS : DESIGNS / 4) / (2 + scattering)));
-  return {
-    ...(method && !method.averages ? { method: method.name } : {}),
-    samples: Math.min(MOST, Math.max(FEWEST, samples)),
-  };
+  const document = state.history.present;
+  return keyed({ panel, path: `panel/${panel}`, body: { ...presentDesign(document), baseline: baselineOf(document),
+    index: goalOf(state), methods: methodNames(state), ...parameters } });
 }
 
 /** What is asked for a table of a panel, whether it is shown or not: of all outputs and indices. @param {State} state

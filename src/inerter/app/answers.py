@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
+from math import floor, log2
 from pkgutil import resolve_name
 from typing import Any
 
@@ -26,7 +27,7 @@ from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
 from inerter.formatting import format_quantity, in_words, typeset
 from inerter.indices.registry import INDICES
-from inerter.methods.registry import DEFAULT, methods_that, searches
+from inerter.methods.registry import DEFAULT, averages, is_blind, methods_that, searches
 from inerter.networks.elements import Damper, Element, Inerter, Spring
 from inerter.networks.elements.algebra import CombinedNetwork, Network
 from inerter.optimisation.budget import BreakEven
@@ -43,7 +44,8 @@ from inerter.work.blas_threads import one_blas_thread
 Body = Mapping[str, Any]
 Answer = dict[str, Any]
 
-_SAMPLES = 1024  # of scatter
+_MOST_DESIGNS = 10_000  # that are judged for a scatter while one waits, and a quarter of them by a method that iterates
+_SAMPLES = 64, 1024  # of a scatter: fewest and most
 
 
 def first() -> None:
@@ -221,7 +223,7 @@ def break_even(study: Study, body: Body) -> Answer:
     baseline = baseline_of(study, body, [])
     if baseline is None:
         raise DesignError("A break-even value needs a baseline: a second layout, or `baseline` in the request.")
-    method = body.get("method") or decisive_method(study.evaluate)
+    method = body.get("method") or decisive_method((*(body.get("methods") or ()), *study.evaluate))
     index, element = required_value(body, "index"), required_value(body, "parameter")
     found = element_break_even(
         design.vehicle, baseline.vehicle, study.over_conditions(index), element, study.method(method)
@@ -255,16 +257,20 @@ def _break_even_sentence(found: BreakEven, name: str, baseline: str) -> str:
 
 
 def scatter(study: Study, body: Body) -> Answer:
-    """Tolerance analysis of a design: distribution of an index, and first- and total-order Sobol' indices."""
+    """Tolerance analysis of a design: distribution of an index, and first- and total-order Sobol' indices.
+
+    By the first of several methods that does not average over roads, and with as many samples as a wait allows.
+    """
     design, name = one_design(study, body), required_value(body, "index")
-    index = study.over_conditions(name)
-    method = body.get("method") or DEFAULT
+    index, spread = study.over_conditions(name), required_value(body, "spread")
+    quick = (method for method in body.get("methods") or () if not averages(method))
+    method = body.get("method") or next(quick, DEFAULT)
     found = tolerance_analysis(
         design.vehicle,
         index,
         study.method(method),
-        spread=required_value(body, "spread"),
-        samples=body.get("samples") or _SAMPLES,
+        spread=spread,
+        samples=body.get("samples") or _affordable_samples(method, len(spread)),
         seed=body.get("seed") or 0,
     )
     counts, edges = np.histogram(found.values[np.isfinite(found.values)], bins=40)
@@ -288,6 +294,13 @@ def scatter(study: Study, body: Body) -> Answer:
         "histogram": {"edges": edges, "counts": counts},
         **found.status.to_json(),
     }
+
+
+def _affordable_samples(method: str, n_scattering: int) -> int:
+    """Number of samples that a wait allows, a power of two: each has as many designs as values scatter, and two."""
+    designs = _MOST_DESIGNS if is_blind(method) else _MOST_DESIGNS // 4
+    fewest, most = _SAMPLES
+    return int(min(max(2 ** floor(log2(designs / (2 + n_scattering))), fewest), most))
 
 
 def required_value(body: Body, key: str) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import isfinite, isnan, nan
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +19,13 @@ from inerter.files.study.parts import run_part
 from inerter.files.study.running import csv_of
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
-from inerter.formatting import shown_decimals
+from inerter.formatting import format_share, shown_decimals, typeset
 from inerter.methods.registry import methods_that, searches
 from inerter.table import csv_rows, csv_text
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
 
 _POINTS = 15
+_EQUAL = 5e-5  # relative difference of values that are called equal
 
 
 def front(body: Body, folder: Path, tell: Tell) -> Any:
@@ -44,10 +46,11 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     tell(len(layouts), len(layouts), "")
     told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
     baseline = study.baseline or next(iter(study.layouts))
-    return {"indices": told, "baseline": baseline, "fronts": [_describe_front(asked, one) for one in found]}
+    base = next((one for one in found if one.layout == baseline), None)
+    return {"indices": told, "baseline": baseline, "fronts": [_describe_front(asked, one, base) for one in found]}
 
 
-def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:
+def _describe_front(study: Study, found: FrontAnswer, base: FrontAnswer | None) -> dict[str, Any]:
     points = []
     for i, (values, parameters, said) in enumerate(zip(found.values, found.parameters, found.statuses, strict=True)):
         status, message = Status.parts(said)
@@ -60,6 +63,7 @@ def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:
                 "texts": texts_of(study, parameters),
                 "status": status,
                 "message": message,
+                "reference": _reference(study, found, i, base),
             }
         )
     return {
@@ -71,3 +75,28 @@ def _describe_front(study: Study, found: FrontAnswer) -> dict[str, Any]:
         "status": found.status,
         "message": found.message,
     }
+
+
+def _reference(study: Study, found: FrontAnswer, i: int, base: FrontAnswer | None) -> dict[str, Any] | None:
+    """Knee with which a point is compared, and how it differs, in a sentence: of its own front, or of the baseline.
+
+    The knee of a front is compared with that of the baseline. None where there is no other knee.
+    """
+    of = base if i == found.knee else found
+    if of is None or of.knee is None or (of is found and i == of.knee):
+        return None
+    pairs = zip(study.trade_off, found.values[i], of.values[of.knee], strict=True)
+    changes = ", ".join(_change(index, value, other) for index, value, other in pairs)
+    name = f"{of.layout} at its knee"
+    sentence = f"Relative to {name}: {changes}."
+    return {"layout": of.layout, "point": of.knee, "name": name, "sentence": typeset(sentence)}
+
+
+def _change(index: str, value: float, other: float) -> str:
+    """How an index differs from another value of it, in words."""
+    share = value / other - 1.0 if other and isfinite(value) and isfinite(other) else nan
+    if isnan(share):
+        return f"{index} is not comparable"
+    if abs(share) < _EQUAL:
+        return f"equal {index}"
+    return f"{format_share(abs(share), 2)} {'lower' if share < 0.0 else 'higher'} {index}"

@@ -7,7 +7,7 @@ import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
-import { aligned, placed, printed, scaled, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
+import { aligned, placed, printed, scaled, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
 import { takeOptima } from "../working.js";
 import { indexAxis, indexChoices, indicesOf, signed } from "./answers.js";
 import { Files } from "./files.js";
@@ -17,8 +17,10 @@ import { Files } from "./files.js";
 /** @import { Declaration, Point as Place } from "../plots/layout.js" */
 /** @typedef {{status: string, message?: string}} Outcome */
 /** `improvements`: per cent below the best of the baseline, by index; `network`: where the points have several.
- * `decimals`: the places that the errors of the values allow, where they have any.
- * @typedef {Outcome & {values: {[index: string]: any}, decimals?: {[index: string]: number | null},
+ * `decimals`: the places that the errors of the values allow, where they have any; `reference`: the knee with which it
+ * is compared, and how it differs.
+ * @typedef {Outcome & {reference?: {layout: string, point: number, name: string, sentence: string} | null,
+ * values: {[index: string]: any}, decimals?: {[index: string]: number | null},
  * texts: {[name: string]: string}, network?: string, improvements?: {[index: string]: number | null}}} Point */
 /** `knee`: the place of the knee among the points.
  * @typedef {Outcome & {layout: string, knee: number | null, points: Point[],
@@ -184,44 +186,23 @@ function tableOf({ points }, indices) {
  * @param {{about: any, entry: Entry, fronts: Front[], indices: Index[], baseline: string, take: () => void}} props */
 function Card({ about, entry, fronts, indices, baseline, take }) {
   const { front, point, number, isKnee } = entry;
-  const { improvements } = point;
-  const other = improvements ? null : referenceOf(entry, fronts, baseline);
+  const { improvements, reference } = point;
+  const other = reference && fronts.find(({ layout }) => layout === reference.layout)?.points[reference.point];
   return html`<section class="front-card" aria-live="polite" aria-label="Point">
     <h4>${front.layout}, point ${number} of ${front.points.length}${isKnee ? ", the knee" : ""}</h4>
     ${point.network && html`<p><code>${point.network}</code></p>`}
     ${!isOk(point.status) && html`<p class="problem"><b>Unreliable.</b> ${point.status}</p>`}
-    <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [other.name] : []),
+    <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [reference.name] : []),
         ...(improvements ? [[`against ${baseline}`, `the lowest value of ${baseline}`]] : [])]}>
       ${indices.map((each) => html`<tr key=${each.index}>
         <th scope="row" title=${each.title}>${each.index}</th>
         <td class="number" data-value=${point.values[each.index]}>${told(point, each)}
           ${" "}<span class="unit">${printed(each.unit)}</span></td>
-        ${other && html`<td class="number">${told(other.point, each)}</td>`}
+        ${other && html`<td class="number">${told(other, each)}</td>`}
         ${improvements && html`<td class="number">${signed(improvements[each.index])}</td>`}</tr>`)}
     <//>
     <p>${valuesIn(about, point.texts)}</p>
-    ${other && html`<p>${sentenceOf(point, other, indices)}</p>`}
+    ${reference && html`<p>${reference.sentence}</p>`}
     <button type="button" class="edged" onClick=${take}>Take this point</button>
   </section>`;
-}
-
-/** What a point is compared with: the knee of its own front; the knee itself with that of the baseline.
- * @param {Entry} entry @param {Front[]} fronts @param {string} baseline
- * @returns {{name: string, point: Point} | null} */
-function referenceOf({ front, isKnee }, fronts, baseline) {
-  const of = isKnee ? fronts.find(({ layout }) => layout === baseline) : front;
-  if (of === undefined || of.knee === null || (isKnee && of === front)) return null;
-  return { name: `${of.layout} at its knee`, point: of.points[of.knee] };
-}
-
-/** How a point differs from another, in one sentence. @param {Point} point @param {{name: string, point: Point}} other
- * @param {Index[]} indices */
-function sentenceOf(point, other, indices) {
-  const parts = indices.map(({ index }) => {
-    const percent = 100 * (point.values[index] / other.point.values[index] - 1);
-    if (!Number.isFinite(percent)) return `${index} is not comparable`;
-    const size = shown(Math.abs(percent), 2);
-    return Math.abs(percent) < 0.005 ? `equal ${index}` : `${size} % ${percent < 0 ? "lower" : "higher"} ${index}`;
-  });
-  return `Relative to ${other.name}: ${parts.join(", ")}.`;
 }

@@ -18,15 +18,16 @@ from hypothesis import strategies as st
 from starlette.testclient import TestClient
 
 import inerter as it
-from inerter.app.documents import problems
+from inerter.app.documents import problems, searched_study_from
 from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.app.requests import ENDPOINTS
+from inerter.files.study.checking import search_plans
 from inerter.files.study.places import places
 from inerter.methods.registry import METHODS
 from inerter.networks.elements import Free
 from inerter.networks.elements.registry import ELEMENTS
-from inerter.networks.parser import network, parse_expression
+from inerter.networks.parser import network, parse_expression, replace_in_expression
 from inerter.units import parse_quantity
 
 CSV = b"time [s],displacement [mm],force [N]\n" + b"".join(
@@ -494,3 +495,66 @@ def test_the_page_knows_no_method_by_its_name() -> None:
     assert sources
     named = [(path.name, name) for path in sources for name in METHODS if f'"{name}"' in path.read_text()]
     assert named == []
+
+
+def test_what_may_be_chosen_is_told_in_words(client: TestClient) -> None:
+    told = client.get("/api/about").json()
+    titles = {method["name"]: method["title"] for method in told["methods"]}
+    assert titles["norm"] == "no friction or gaps (norm)"
+    assert titles["statistical-linearisation"] == "with friction (statistical linearisation)"
+    assert titles["expected-value"] == "with friction and gaps (expected value)"
+    sides = {side["key"]: side["words"] for side in told["limit_sides"]}
+    assert sides == {"at_most": "at most", "at_least": "at least", "equal": "equal"}
+    assert [kind["key"] for kind in told["elements"] if kind["linear"] == "stiffness"] == ["spring"]
+    assert [vehicle["key"] for vehicle in told["vehicles"] if vehicle["is_rig"]] == ["rig"]
+
+
+def test_a_free_network_to_begin_with_can_be_searched(client: TestClient) -> None:
+    entry = client.get("/api/about").json()["new_free_network"]
+    elements = {**DOCUMENT["elements"], "any": entry}
+    document = {**DOCUMENT, "elements": elements, "layouts": {**DOCUMENT["layouts"], "free": "k | any"}}
+    assert problems(document) == []
+    (plan, *_) = search_plans(searched_study_from(document)).values()
+    assert max(topology.size for topology in plan.topologies) == entry["network"] == 3
+    assert {symbol for topology in plan.topologies for symbol in topology.kinds} == {"k", "c", "b"}
+
+
+DEVICE = {"elements": {"b": "113 kg", "g": "0.1 mm", "c": "3 kN s/m"}, "layouts": {"rig": "(b | c) - g"}}
+
+
+@pytest.mark.parametrize(
+    ("network", "parallel", "series", "damper"),
+    [
+        ("k | c", "k | c | (b2 | c2) - g", "k | c - ((b2 | c2) - g)", "c"),
+        ("k | c - (b | f)", "k | c - (b | f) | (b2 | c2) - g", "k | c - ((b2 | c2) - g) - (b | f)", "c"),
+        ("k", "k | (b2 | c2) - g", None, None),
+        ("", "(b2 | c2) - g", None, None),
+        ("k | c - (", "k | c - ( | (b2 | c2) - g", None, None),  # as it is being typed
+    ],
+)
+def test_a_device_joins_a_strut(
+    client: TestClient, network: str, parallel: str, series: str | None, damper: str | None
+) -> None:
+    """In parallel, and in series with its first damper, as the networks that these texts name."""
+    told = ask(client, "study/device", study=DOCUMENT, network=network, device=DEVICE)
+    assert told["elements"] == {"b2": "113 kg", "g": "0.1 mm", "c2": "3 kN s/m"}
+    assert (told["parallel"], told["damper"]) == (parallel, damper)
+    assert (told["series"] is None) == (series is None)
+    if series is not None:
+        assert replace_in_expression(told["series"], {}) == replace_in_expression(series, {})
+
+
+def test_a_device_keeps_names_of_equal_elements_and_avoids_those_of_others(client: TestClient) -> None:
+    """A name is new in the study and in the device."""
+    device = {"elements": {"k": "20 kN/m", "b": "1 kg", "b2": "2 kg"}, "layouts": {"rig": "k | b - b2"}}
+    told = ask(client, "study/device", study=DOCUMENT, network="c", device=device)
+    assert told["elements"] == {"k": "20 kN/m", "b3": "1 kg", "b2": "2 kg"}
+    assert told["parallel"] == "c | k | b3 - b2"
+
+
+@pytest.mark.parametrize("device", [{}, {"elements": {"b": "1 kg"}}, {"layouts": {"rig": "b - ("}}, {"layouts": 5}])
+def test_a_device_without_a_network_is_refused(client: TestClient, device: dict[str, Any]) -> None:
+    body = {"study": DOCUMENT, "network": "k", "device": device}
+    answer = client.post("/api/study/device", json=body)
+    assert answer.status_code == 400
+    assert "it has no network" in answer.json()["sentence"]

@@ -37,6 +37,11 @@ BODIES: dict[str, dict[str, Any]] = {
     "study/check": {"study": DOCUMENT},
     "study/parts": {"study": SEARCHED},
     "study/rename": {"study": DOCUMENT, "names": {"k": "spring", "c": "b", "b": "c"}},
+    "study/device": {
+        "study": DOCUMENT,
+        "network": "k | c",
+        "device": {"elements": {"b": "9 kg"}, "layouts": {"d": "b"}},
+    },
     "study/write": {"study": DOCUMENT, "designs": [DESIGN]},
     "network/parse": {"text": "k | c - (b | f)", "elements": ["k", "c", "b", "f"]},
     "quantity": {"text": "5 kN/m", "unit": "N/m", "digits": 4},

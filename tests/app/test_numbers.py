@@ -200,6 +200,8 @@ def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
     assert [one["kept"] for _, one in told[1:]] == [each["k"] > 60e3 for each in values[1:]]
     assert {one["kept"] for one, _ in told[1:]} == {True, False}
     assert [one["kept"] for one in told[0]] == [True, True]
+    for one in (limit for limits in told for limit in limits):
+        assert one["sentence"] == typeset(f"{'kept' if one['kept'] else 'broken'}: {one['title']}; it is {one['text']}")
 
 
 def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:
@@ -210,6 +212,7 @@ def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:
     body = {"study": document, "methods": ["norm"], "indices": ["tyre-load"]}
     travel, stiffness = ask(client, "panel/indices", **body)["designs"][0]["limits"]
     assert (travel["value"], travel["kept"]) == (None, None)
+    assert travel["sentence"].startswith(f"{travel['status']}: not known: {travel['title']} (")
     assert "friction" in travel["message"]
     assert (stiffness["value"], stiffness["kept"]) == (0.0, False)
 

@@ -15,7 +15,7 @@ import { entryAt, isRange, own, textOf } from "./state/document.js";
  * free_networks: string[]}},
  * elements: {[name: string]: {kind: string | null, layouts: string[]}}, numbers: NumberRow[]}} Parts */
 
-/** @typedef {{name: string, words?: string, sees: "neither" | "friction" | "both", searches: boolean,
+/** @typedef {{name: string, title: string, sees: "neither" | "friction" | "both", searches: boolean,
  * averages: boolean}} Method */
 
 /** @type {Parts} */
@@ -119,15 +119,8 @@ export const judging = (state) => methodOf(state, state.view.method);
 
 /** What chooses the one by which the page judges. @param {Store} store */
 export const methodChoice = (store) => ({ value: judging(store.get())?.name,
-  choices: methodsOf(store.get()).map((method) => [method.name, methodTitle(method)]),
+  choices: methodsOf(store.get()).map((method) => [method.name, method.title]),
   set: (/** @type {string} */ method) => store.look({ method }) });
-
-/** A method in words, with its name. @param {Method} method */
-function methodTitle({ name, sees }) {
-  const words = { neither: "no friction or gaps", friction: "with friction",
-    both: "with friction and gaps" }[sees] ?? "";
-  return `${words || name} (${name.replaceAll("-", " ")})`;
-}
 
 /** The suffixes of files of records. @param {State} state @returns {string[]} */
 export const recordSuffixes = ({ about }) => about?.record_suffixes ?? [];

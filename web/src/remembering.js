@@ -162,14 +162,12 @@ async function openStudyFile(store, api, file) {
   store.say(`${file.name} is open${problems.length ? `; ${several} another value` : ""}.`);
 }
 
-const RIG = "displacement"; // what is moved there: an end of the device itself
-
 /** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is
  * open. @param {Store} store @param {Api} api @param {string} name @param {any} tables */
 async function openSimulation(store, api, name, { signal, simulation, ...study }) {
   const { about } = store.get();
   const model = about.vehicles.find((/** @type {any} */ { key }) => key === study.vehicle.model);
-  if (model?.moved === RIG) return store.say(`${name}: ${await takeDevice(store, api, study)}`);
+  if (model?.is_rig) return store.say(`${name}: ${await takeDevice(store, api, study)}`);
   if (!(await beginWith(store, api, { ...study, study: { indices: [about.indices[0].symbol] } }))) return;
   if (simulation?.layout in study.layouts) store.change({ type: "selected", layout: simulation.layout });
   const examples = about.road.map((/** @type {any} */ { key, example }) => [key, example]);
@@ -188,19 +186,23 @@ async function openFit(store, api, file) {
   store.say(`${file.name}: ${await takeFitted(store, api, fit, study ?? {})}`);
 }
 
-const FOR_RECORDS = "quarter-car"; // the example that is opened where a record comes first: its panel needs a study
-
-/** @param {Store} store @param {Api} api @param {File} file */
+/** Where a record comes first, the study of the first vehicle is opened, since its device needs one.
+ * @param {Store} store @param {Api} api @param {File} file */
 async function openRecord(store, api, file) {
   store.look({ tab: "rig", tall: true });
   store.say(`Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
-  const blank = isBlank(store.get().history.present);
-  if (blank && (await beginWith(store, api, (await api.get(`examples/${FOR_RECORDS}`)).study)))
-    store.change({ type: "selected", layout: baselineOf(store.get().history.present).layout }); // the device joins it
+  let told = `${file.name} was read.`;
+  if (isBlank(store.get().history.present)) {
+    const { examples, vehicles: [first] } = await api.get("examples");
+    const { study } = examples.find((/** @type {any} */ { name }) => name === first.name);
+    if (await beginWith(store, api, study)) // the device joins the baseline
+      store.change({ type: "selected", layout: baselineOf(store.get().history.present).layout });
+    told += ` The example ${study.title} is open for its device: see Rig.`;
+  }
   showNewest(".tabs");
-  store.say(`${file.name} was read.${blank ? " A quarter car is open for its device: see Rig." : ""}`, file.name);
+  store.say(told, file.name);
 }
 
 const BEFORE = "inerter.opened";

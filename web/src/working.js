@@ -1,8 +1,7 @@
 // Long work: begun, watched, stopped, and found again after a reload of the page.
 
 import { Lost, Refusal, postNow } from "./api.js";
-import { freeIn, isQuick, kindOf, layoutsWith, methodOf, quickMethod } from "./library.js";
-import { freshName } from "./network/algebra.js";
+import { freeIn, isQuick, layoutsWith, methodOf, quickMethod } from "./library.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { questions, strutTexts } from "./questions.js";
 import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
@@ -200,8 +199,6 @@ export function takeNetwork(store, found, row) {
   return `${doubts}The layout ${layout} has the network ${row.network}.`;
 }
 
-const OF_VELOCITY = "N s/m"; // unit of an element whose force is that of a velocity
-
 /** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own, and in another
  * one in series with the first damper of that strut; what would have the name of another element gets a new one.
  * Returns what to tell. @param {Store} store @param {Api} api
@@ -211,32 +208,19 @@ export async function takeDevice(store, api, { elements = {}, layouts = {} }, st
   const texts = strutTexts(store.get());
   const document = store.get().history.present;
   if (document.layout === "") return "Open a study first: the device joins its strut.";
-  const known = document.study.elements ?? {};
-  const taken = [...Object.keys(known), ...Object.keys(elements)];
-  const others = Object.keys(elements).filter((name) =>
-    Object.hasOwn(known, name) && JSON.stringify(known[name]) !== JSON.stringify(elements[name]));
-  /** @type {{[name: string]: string}} */
-  const names = {};
-  for (const name of others) names[name] = freshName(name, [...taken, ...Object.values(names)]);
-  const { study: device } = await api.post("study/rename", { study: { elements, layouts }, names });
-  const { networks } = await api.post("study/parts", { study: device });
-  const network = networks.find((/** @type {any} */ { tree }) => tree !== undefined);
-  if (network === undefined) return "There is no device that could be taken.";
+  const { parallel, series, damper, ...device } = await api.post("study/device", { study: document.study,
+    network: strut ? texts[strut] : textOf(document), device: { elements, layouts } });
   if (store.get().history.present !== document) return "The study was changed meanwhile; take the device again.";
   const name = nextLayout(document);
   const gesture = Symbol("device");
   store.change({ type: "layoutAdded", name }, gesture);
   if (strut) store.change({ type: "strutsParted", texts, strut }, gesture);
-  const before = textOf(store.get().history.present);
-  const text = before ? `${before} | ${network.text}` : network.text;
-  store.change({ type: "drawn", text, added: device.elements }, gesture);
-  const damper = before.match(/[A-Za-z_]\w*/g)?.find((each) => kindOf(store.get(), each)?.unit === OF_VELOCITY);
+  store.change({ type: "drawn", text: parallel, added: device.elements }, gesture);
   let also = "";
-  if (damper) { // where an inerter helps is not known before: both are ranked
+  if (series) { // where an inerter helps is not known before: both are ranked
     const second = nextLayout(store.get().history.present);
     store.change({ type: "layoutAdded", name: second }, gesture);
-    const inSeries = before.replace(new RegExp(`\\b${damper}\\b`), `${damper} - (${network.text})`);
-    store.change({ type: "drawn", text: inSeries, added: {} }, gesture);
+    store.change({ type: "drawn", text: series, added: {} }, gesture);
     store.change({ type: "selected", layout: name, strut: store.get().history.present.strut }, gesture);
     also = `, and in ${second}, in series with ${damper}`;
   }

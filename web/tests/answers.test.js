@@ -231,8 +231,8 @@ test("only what is given is handed on: no withheld device, no values of another 
   const known = { ...fit, parameters: { b: { value: null, interval: [113, 122] } } };
   /** @type {any} */
   const api = {
-    post: async (/** @type {string} */ path, /** @type {any} */ body) =>
-      path === "study/parts" ? partsOf(body.study) : { study: body.study },
+    post: async (/** @type {string} */ path, /** @type {any} */ body) => ({ elements: body.device.elements,
+      parallel: `${body.network} | ${body.device.layouts.device}`, series: null, damper: null }),
   };
   const refused = /^Unreliable: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/;
   for (const each of [fit, known]) assert.match(await takeFitted(store, api, each, device), refused);

@@ -14,13 +14,14 @@ from inerter.app.kinds import KINDS
 from inerter.app.panels import PANELS
 from inerter.exports.registry import EXPORTS
 from inerter.field_metadata import Field, fields_of, mounts_of
-from inerter.files.common.free_networks import FREE_NETWORK
+from inerter.files.common.free_networks import FREE_NETWORK, new_free_network
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
 from inerter.files.identification.sections import CHOOSE, CHOOSE_WORDS
 from inerter.files.study import KIND
 from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
-from inerter.formatting import capital, typeset_unit, unit_choices
+from inerter.files.study.limits import SENSES
+from inerter.formatting import capital, in_words, typeset_unit, unit_choices
 from inerter.identification.models import MODELS, model_words
 from inerter.indices.names import index_words
 from inerter.indices.registry import INDICES, index_choices
@@ -49,6 +50,7 @@ def about() -> dict[str, Any]:
                 "mounts": list(mounts_of(kind)),
                 "moved": kind.moved,
                 "forces": dict(kind.forces),
+                "is_rig": kind.moved not in ("road", *kind.forces),
             }
             for key, kind in VEHICLES.items()
         ],
@@ -70,8 +72,10 @@ def about() -> dict[str, Any]:
             for one in FREE_NETWORK.keys
             if (schema := one.schema()).get("type") in ("integer", "boolean")
         ],
+        "new_free_network": new_free_network(),
         "signals": [_signal(key) for key in SIGNALS],
         "conventions": list(CONVENTIONS),
+        "limit_sides": [{"key": side, "words": in_words(side)} for side in SENSES],
         "panels": [{"key": panel.key, "title": panel.title} for panel in PANELS.values()],
         "work": [
             {name: getattr(kind, name) for name in ("key", "title", "keys", "resumes", "description", "lacking")}
@@ -109,6 +113,7 @@ def _element(kind: type[Element]) -> dict[str, Any]:
     return {
         **{name: getattr(kind, name) for name in said},
         "more": _fields(kind.more),
+        "linear": kind.linear.name.lower(),
         "switches": kind.switch is not None,
         "states": list(kind.switch.states.values()) if kind.switch else [],
         "drawing": [[list(point) for point in line] for line in kind.drawing],
@@ -130,6 +135,7 @@ def _method(name: str) -> dict[str, Any]:
     kind: Any = METHODS[name]
     return {
         "name": name,
+        "title": f"{kind.nonlinearity_support.words} ({name.replace('-', ' ')})",
         "words": words_of(name),
         "sees": kind.nonlinearity_support.name.lower(),
         "searches": searches(name),

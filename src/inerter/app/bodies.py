@@ -63,6 +63,14 @@ class RenameElements(Body):
     names: dict[Name, Name]
 
 
+class DeviceInStrut(Body):
+    """A study document, the network of a strut, and a document of a device that joins it."""
+
+    study: Document
+    network: str
+    device: Document
+
+
 class WriteStudy(Body):
     """A study document, and designs at which it is to be fixed, if any."""
 

@@ -20,7 +20,7 @@ from inerter.files.study.limits import (
 )
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity, in_words
+from inerter.formatting import format_quantity, in_words, typeset
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.active_constraints import ConstraintResult
@@ -72,6 +72,16 @@ class DesignLimit:
         """Value with its unit; empty where it is not known."""
         return "" if self.kept is None else format_quantity(self.estimate.value, self.limit.unit)
 
+    @property
+    def sentence(self) -> str:
+        """Whether the limit is kept, and the value; first a doubt about it."""
+        status = self.estimate.status
+        doubt = "" if status.ok else f"{status.kind.value}: "
+        kept = {True: "kept", False: "broken", None: "not known"}[self.kept]
+        value = f"; it is {self.text}" if self.text else ""
+        reason = f" ({status.message})" if status.message else ""
+        return f"{doubt}{kept}: {self.quantity} {self.side}{value}{reason}"
+
     def to_json(self) -> dict[str, Any]:
         """The limit for an answer."""
         return {
@@ -86,6 +96,7 @@ class DesignLimit:
             "value": self.estimate.value,
             "text": self.text,
             "kept": self.kept,
+            "sentence": typeset(self.sentence),
             **self.estimate.status.to_json(),
         }
 

@@ -199,6 +199,13 @@ ENDPOINTS: tuple[Endpoint, ...] = (
         lambda server, request, body: study_parts.renamed_document(body.study, body.names),
         bodies.RenameElements,
     ),
+    Endpoint(
+        "POST",
+        "/api/study/device",
+        "A strut with a device in it",
+        lambda server, request, body: study_parts.strut_with_device(body.study, body.network, body.device),
+        bodies.DeviceInStrut,
+    ),
     Endpoint("POST", "/api/study/write", "A document as a study file", _write, bodies.WriteStudy),
     Endpoint(
         "POST",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import count
 from typing import Any
 
 from inerter.app.parts import parse_network
@@ -10,6 +11,8 @@ from inerter.app.wire import Refusal
 from inerter.files.common.free_networks import is_free_network
 from inerter.files.common.problem import EntryError
 from inerter.files.study.drafts import Draft, WrittenNumber, rename_elements
+from inerter.networks.elements.roles import LinearRole
+from inerter.networks.parser import replace_in_expression
 
 Document = Mapping[str, Any]
 
@@ -57,6 +60,37 @@ def _number(written: WrittenNumber) -> dict[str, Any]:
         "value": number.value if isinstance(number.value, int | float) else None,
         "may_be_free": number.may_be_free,
         "name": written.name,
+    }
+
+
+def strut_with_device(document: Document, network: str, device: Document) -> dict[str, Any]:
+    """A strut with a device in parallel, and with it in series with its first damper, since either may be the better.
+
+    Elements of the device get new names where the document has others of theirs. Raises `Refusal` for a device
+    without a network, or with elements that cannot be renamed.
+    """
+    known = Draft(document).elements
+    given, entries = document.get("elements"), device.get("elements")
+    given, entries = (table if isinstance(table, Mapping) else {} for table in (given, entries))
+    taken = {*given, *entries}
+    names: dict[str, str] = {}
+    for name in entries:
+        if name in given and given[name] != entries[name]:
+            names[name] = next(f"{name}{i}" for i in count(2) if f"{name}{i}" not in taken)
+            taken.add(names[name])
+    renamed = renamed_document(device, names)["study"]
+    own = renamed.get("elements") or {}
+    joined = next((text for text in Draft(renamed).networks.values() if "tree" in parse_network(text, own)), None)
+    if joined is None:
+        raise Refusal(400, "There is no device that could be taken: it has no network.")
+    inside = (name for name in parse_network(network, None).get("names", ()) if name in known)
+    damper = next((name for name in inside if known[name].linear is LinearRole.DAMPING), None)
+    series = None if damper is None else replace_in_expression(network, {damper: f"{damper} - ({joined})"})
+    return {
+        "elements": own,
+        "parallel": f"{network} | {joined}" if network.strip() else joined,
+        "series": series,
+        "damper": damper,
     }
 
 

@@ -166,6 +166,13 @@ class NonlinearitySupport(Enum):
     FRICTION = auto()  # gaps are refused
     BOTH = auto()
 
+    @property
+    def words(self) -> str:
+        """What of a design is modelled, in words."""
+        return {"NEITHER": "no friction or gaps", "FRICTION": "with friction", "BOTH": "with friction and gaps"}[
+            self.name
+        ]
+
 
 @runtime_checkable
 class Method(Protocol):

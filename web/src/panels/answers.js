@@ -254,15 +254,9 @@ function Limits({ limits }) {
   return limits.length === 0
     ? null
     : html`<ul class="limits" aria-label="Limits">
-      ${limits.map((limit) => html`<li key=${limit.title} class=${isOk(limit.status) ? LIMIT_CLASSES[limit.kept]
-        : "quiet"}>${!isOk(limit.status) && `${limit.status}: `}${LIMIT_WORDS[limit.kept]}: ${limit.title}${limit.text
-          && `; it is ${limit.text}`}${limit.message && ` (${limit.message})`}</li>`)}</ul>`;
+      ${limits.map(({ title, status, kept, sentence }) => html`<li key=${title} class=${!isOk(status) || kept === null
+        ? "quiet" : kept ? "good" : "bad"}>${sentence}</li>`)}</ul>`;
 }
-
-/** @type {{[kept: string]: string}} */
-const LIMIT_WORDS = { true: "kept", false: "broken", null: "not known" };
-/** @type {{[kept: string]: string}} */
-const LIMIT_CLASSES = { true: "good", false: "bad", null: "quiet" };
 
 /** Adding, renaming and removing layouts. @param {{store: Store}} props */
 function Layouts({ store }) {

@@ -18,7 +18,6 @@ import { Entry } from "./values.js";
 /** A setting of an index: one of `options`, or a quantity.
  * @typedef {{key: string, sentence: string, options?: string[], example: string, unit: string}} Setting */
 
-const SENSES = ["at_most", "at_least", "equal"];
 const PLACE = ["study", "subject_to"];
 
 /** @param {{store: Store}} props */
@@ -48,7 +47,9 @@ export function Constraints({ store }) {
   // What is minimised stands last.
   const choices = useLimitable(state).toSorted((one, other) => Number(one.of === goal) - Number(other.of === goal));
   const [of = "", setOf] = useChoice(choices.map(({ of }) => of));
-  const [sense = "", setSense] = useChoice(SENSES);
+  /** @type {{key: string, words: string}[]} */
+  const sides = state.about?.limit_sides ?? [];
+  const [sense = "", setSense] = useChoice(sides.map(({ key }) => key));
   const [value, setValue] = useState("");
   /** @type {{of: string, sense: string, words: string}[]} */
   const told = (answerOf(state, "decision").value?.rows ?? [])
@@ -71,7 +72,7 @@ export function Constraints({ store }) {
     ${limitsOf(state).map(({ path, sense, value }) => {
       const of = path.join(".");
       const label = told.find((each) => each.of === of && each.sense === sense)?.words
-        ?? `${named(of)?.words ?? of} ${sense.replace("_", " ")}`;
+        ?? `${named(of)?.words ?? of} ${sides.find(({ key }) => key === sense)?.words}`;
       const id = `limit ${of} ${sense}`;
       return html`<p class="row" key=${id}>${label} <${Entry} id=${id} label=${label} text=${String(value)}
           done=${(/** @type {string} */ text) => take(id, String(value), [...PLACE, ...path, sense], text)} />
@@ -85,7 +86,7 @@ export function Constraints({ store }) {
       <${Select} label="Add one on" name="of" value=${of} set=${setOf}
         choices=${choices.map(({ of, words }) => [of, capital(words)])} />
       <${Select} aria-label="Which side" name="sense" value=${sense} set=${setSense}
-        choices=${SENSES.map((sense) => [sense, sense.replace("_", " ")])} />
+        choices=${sides.map(({ key, words }) => [key, words])} />
       <input class="entry" name="value" aria-label="How much, with its unit" autocomplete="off"
         placeholder=${written ? `in ${printed(written)}` : "how much"} value=${value} onInput=${textHandler(setValue)}
         onKeyDown=${(/** @type {KeyboardEvent} */ { key }) => key === "Enter" && add()} />

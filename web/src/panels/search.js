@@ -36,17 +36,12 @@ export function toSearch(store) {
   });
 }
 
-/** The free network that a study gets: of few elements, so that a search takes minutes, within bounds that are wide for
- * any vehicle. */
-const FREE = { network: 3, springs: { from: "1 kN/m", to: "10 MN/m" }, dampers: { from: "10 N s/m", to: "1 MN s/m" },
-  inerters: { from: "10 g", to: "100 t" } };
-
 /** A network with the spring that carries the vehicle, null where there is none. @param {State} state
  * @param {string} text */
 function carryingIn(state, text) {
   const tree = treeOf(state, text);
   return tree?.kind === "parallel" ? tree.parts.find((part) => part.kind === "element"
-    && kindOf(state, part.name)?.key === "spring") : null;
+    && kindOf(state, part.name)?.linear === "stiffness") : null;
 }
 
 /** Buttons that add a layout with a free network: for several struts at one of them, or the same at all that carry.
@@ -81,7 +76,7 @@ function addFreeNetwork(store, struts) {
     [each, struts.includes(each) ? freed(text) : text]));
   store.change([
     { type: "layoutAdded", name: added },
-    { type: "placed", place: ["elements", name], value: FREE },
+    { type: "placed", place: ["elements", name], value: state.about?.new_free_network },
     { type: "placed", place: ["layouts", added], value: next[""] ?? next },
     { type: "selected", layout: added, strut: struts.includes(strut ?? "") ? strut : struts[0] },
     { type: "placed", place: ["study", "optimise"], value: study.study?.optimise ?? quickMethod(state)?.name },

@@ -19,6 +19,7 @@ from inerter.networks.free_network import FreeNetwork
 
 NETWORK = "network"
 _MOST = 7  # elements
+_FEW = 3  # elements of a network that a search finds in minutes
 _KINDS: dict[str, tuple[type[Element], str, str]] = {
     "springs": (Spring, "1 kN/m", "10 MN/m"),
     "dampers": (Damper, "10 N s/m", "1 MN s/m"),
@@ -29,6 +30,16 @@ _KINDS: dict[str, tuple[type[Element], str, str]] = {
 def is_free_network(raw: Any) -> bool:
     """Whether an entry of a file is one of a free network."""
     return isinstance(raw, dict) and NETWORK in raw
+
+
+def new_free_network() -> dict[str, Any]:
+    """Entry of a free network to begin with: of few elements of each kind, within bounds that are wide for any vehicle.
+
+    >>> new_free_network()["springs"]
+    {'from': '1 kN/m', 'to': '10 MN/m'}
+    """
+    bounds = {kinds: {"from": lower, "to": upper} for kinds, (_, lower, upper) in _KINDS.items()}
+    return {NETWORK: _FEW, **bounds}
 
 
 def _bounds_codec(kinds: str) -> TableCodec:

@@ -160,7 +160,9 @@ def fixture() -> dict[str, Any]:
         document = STUDIES[name][0] if name in STUDIES else {"vehicle": {"model": "rig"}}
         kept = {key: mechanism[key] for key in ("coordinates", "struts", "tyres", "roads")}
         speed = float(document.get("road", {}).get("speed", "0 m/s").split()[0])
-        told[name] = {"model": document["vehicle"]["model"], "speed": speed, "mechanism": kept, **_thin(moved[name])}
+        model = document["vehicle"]["model"]
+        outline = it.VEHICLES[model].outline if model in it.VEHICLES else ""
+        told[name] = {"model": model, "outline": outline, "speed": speed, "mechanism": kept, **_thin(moved[name])}
     return told
 
 

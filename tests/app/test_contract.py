@@ -507,6 +507,8 @@ def test_what_may_be_chosen_is_told_in_words(client: TestClient) -> None:
     assert sides == {"at_most": "at most", "at_least": "at least", "equal": "equal"}
     assert [kind["key"] for kind in told["elements"] if kind["linear"] == "stiffness"] == ["spring"]
     assert [vehicle["key"] for vehicle in told["vehicles"] if vehicle["is_rig"]] == ["rig"]
+    outlines = {vehicle["key"]: vehicle["outline"] for vehicle in told["vehicles"]}
+    assert {key for key, outline in outlines.items() if outline == "car"} == {"half-car", "full-car"}
 
 
 def test_a_free_network_to_begin_with_can_be_searched(client: TestClient) -> None:

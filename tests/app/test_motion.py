@@ -12,10 +12,12 @@ from app.conftest import DOCUMENT, ask, changed
 from starlette.testclient import TestClient
 
 import inerter as it
+from inerter.app.answers import answer_panel
 from inerter.app.designs import one_design
 from inerter.app.documents import study_from
 from inerter.app.histories import history
 from inerter.simulation.elongations import elongations
+from inerter.units import parse_quantity
 
 VALUES = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 50.0}}
 DESIGN = {"layout": "S3", "values": VALUES["S3"]}
@@ -106,3 +108,12 @@ def test_the_vehicles_of_the_page_are_those_of_the_server() -> None:
     kept = json.loads(page_vehicles.FIXTURE.read_text(encoding="utf-8"))
     for name, told in page_vehicles.described().items():
         assert kept[name]["mechanism"] == {key: told[key] for key in kept[name]["mechanism"]}, name
+
+
+def test_masses_and_tyres_are_written_by_the_library() -> None:
+    heavy = changed(vehicle={"sprung_mass": "12.5 t", "tyre_stiffness": "1.8 MN/m"})
+    found = answer_panel("mechanism", {"study": heavy, "layout": "S1"})
+    texts = {one["name"]: one["text"] for one in found["coordinates"]}
+    assert {name: parse_quantity(text, "kg") for name, text in texts.items()} == {"sprung": 12500.0, "unsprung": 35.0}
+    (tyre,) = found["tyres"]
+    assert tyre["network"]["text"] == "1.8 MN/m"

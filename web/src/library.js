@@ -124,3 +124,8 @@ export const methodChoice = (store) => ({ value: judging(store.get())?.name,
 
 /** The suffixes of files of records. @param {State} state @returns {string[]} */
 export const recordSuffixes = ({ about }) => about?.record_suffixes ?? [];
+
+/** As which the library declares a vehicle to be drawn. @param {Pick<State, "about">} state @param {any} vehicle
+ * @returns {string} */
+export const outlineOf = ({ about }, vehicle) =>
+  about?.vehicles?.find((/** @type {any} */ { key }) => key === vehicle?.model)?.outline ?? "";

@@ -15,8 +15,8 @@ const FEW = 1e-6;
 
 /** Each vehicle laid out in each size, with moments of its motion. */
 const ALL = Object.entries(JSON.parse(readFileSync(new URL("vehicles.json", import.meta.url), "utf8")))
-  .flatMap(([name, { model, speed, mechanism, motion, shaded }]) => SIZES.map((size) => {
-    const found = scene(mechanism, model);
+  .flatMap(([name, { model, outline, speed, mechanism, motion, shaded }]) => SIZES.map((size) => {
+    const found = scene(mechanism, model, outline);
     const made = layout(found, size, rangeOf(found, motion ? [motion] : []));
     const times = motion ? motion.time.filter((_, i) => i % 3 === 0) : [];
     const moments = motion ? times.map((at) => momentOf(made, motion, at, { speed, shaded })) : [REST];
@@ -30,6 +30,12 @@ const of = (name) => ALL.find((each) => each.name === name);
 const always = (check) => ALL.forEach((each) => each.moments.forEach((moment) => check(each, moment)));
 
 const near = (a, b, within, said) => assert.ok(Math.abs(a - b) <= within, `${said}: ${a} is not ${b}`);
+
+test("a vehicle is drawn as a car where the library declares it one, whatever it is called", () => {
+  const { mechanism } = of("half car");
+  assert.equal(scene(mechanism, "half-car").silhouette, false);
+  assert.equal(scene(mechanism, "a van of somebody", "car").silhouette, true);
+});
 
 test("bodies, wheels and struts of each kind of vehicle are where they are", () => {
   const kinds = (name) => Object.fromEntries(of(name).scene.bodies.map((body) => [body.name, body.kind]));

@@ -50,6 +50,7 @@ def about() -> dict[str, Any]:
                 "mounts": list(mounts_of(kind)),
                 "moved": kind.moved,
                 "forces": dict(kind.forces),
+                "outline": kind.outline,
                 "is_rig": kind.moved not in ("road", *kind.forces),
             }
             for key, kind in VEHICLES.items()

@@ -132,7 +132,13 @@ def describe_mechanism(mechanism: Mechanism) -> Answer:
     known = outputs(mechanism, full_graph(mechanism))
     return {
         "coordinates": [
-            {"name": c.name, "inertia": c.inertia, "angle": c.angle, "roll": c.name in rolling}
+            {
+                "name": c.name,
+                "inertia": c.inertia,
+                "text": _written(c.inertia, "kg m^2" if c.angle else "kg"),
+                "angle": c.angle,
+                "roll": c.name in rolling,
+            }
             for c in mechanism.coordinates
         ],
         "struts": [
@@ -148,8 +154,13 @@ def describe_mechanism(mechanism: Mechanism) -> Answer:
     }
 
 
+def _written(value: Any, unit: str) -> str:
+    """Value of a design, which is a number, as text."""
+    return typeset(format_quantity(value, unit))
+
+
 def tree_of(network: Network) -> Answer:
-    """Network as data: connections, and name, kind, unit and value of each element."""
+    """Network as data: connections, and name, kind, unit and value of each element, which is written as `text`."""
     if isinstance(network, Element):
         return {
             "kind": "element",
@@ -157,6 +168,7 @@ def tree_of(network: Network) -> Answer:
             "key": network.key,
             "unit": network.unit,
             "value": network.value,
+            "text": _written(network.value, network.unit),
         }
     assert isinstance(network, CombinedNetwork)
     return {"kind": type(network).__name__.lower(), "parts": [tree_of(part) for part in network.parts]}

@@ -17,6 +17,7 @@ from inerter.files.common.signals import SignalRequest
 from inerter.files.simulation.request import SimulationRequest
 from inerter.files.study.study import Study
 from inerter.formatting import format_alike
+from inerter.networks.elements.registry import middle_phrases
 from inerter.simulation.elongations import elongations
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import main_outputs
@@ -156,12 +157,18 @@ def _coordinate_outputs(mechanism: Mechanism) -> dict[str, str]:
 
 
 def state_intervals(run: Trajectory) -> list[dict[str, Any]]:
-    """Time intervals of each element that switches in each of its states."""
+    """Time intervals of each switching element in each of its states; those between two limits have words."""
+    words = middle_phrases()
     states: dict[str, set[str]] = {element: {state} for element, state in run.states.items()}
     for event in run.events[:_MOST_EVENTS]:
         states[event.element] |= {event.after}
     return [
-        {"element": element, "state": state, "intervals": run.intervals(element, state)[:_MOST_EVENTS]}
+        {
+            "element": element,
+            "state": state,
+            "words": words.get(state, ""),
+            "intervals": run.intervals(element, state)[:_MOST_EVENTS],
+        }
         for element, several in states.items()
         for state in sorted(several)
     ]

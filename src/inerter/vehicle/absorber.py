@@ -45,6 +45,7 @@ class Absorber(VehicleModel):
     )
     key: ClassVar[str] = "absorber"
     question: ClassVar[str] = "A vibration absorber"
+    outline: ClassVar[str] = "absorber"
     moved: ClassVar[str] = "primary_force"
     forces: ClassVar[Mapping[str, str]] = {"primary_force": "N"}
 

@@ -101,6 +101,7 @@ class FullCar(VehicleModel):
     )
     key: ClassVar[str] = "full-car"
     question: ClassVar[str] = "Four wheels and anti-roll bars"
+    outline: ClassVar[str] = "car"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m", "roll_moment": "N m"}
 
     def mechanism(self) -> Mechanism:

@@ -67,6 +67,7 @@ class HalfCar(VehicleModel):
     rear: Network = field(metadata=mount("Between body and rear wheel."))
     key: ClassVar[str] = "half-car"
     question: ClassVar[str] = "Two axles, one road"
+    outline: ClassVar[str] = "car"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N", "pitch_moment": "N m"}
 
     def mechanism(self) -> Mechanism:

@@ -57,6 +57,7 @@ class QuarterCar(VehicleModel):
     strut: Network = field(metadata=mount("Between body and wheel."))
     key: ClassVar[str] = "quarter-car"
     question: ClassVar[str] = "Which strut for a quarter car?"
+    outline: ClassVar[str] = "corner"
     forces: ClassVar[Mapping[str, str]] = {"sprung_force": "N"}
 
     def mechanism(self) -> Mechanism:

@@ -82,6 +82,9 @@ class VehicleModel:
     moved: ClassVar[str] = "road"  # default input of a signal: this, a force, or "displacement" of a rig
     forces: ClassVar[Mapping[str, str]] = {}  # external forces and moments, with their units
     question: ClassVar[str] = ""  # answered by its example on a first screen
+    outline: ClassVar[str] = (
+        ""  # as which it is drawn: "car", "corner" of a car, or "absorber"; "" from its ports alone
+    )
 
     _repr_svg_ = shown_by("inerter.figures.plots.network:design_svg")
 

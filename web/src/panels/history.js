@@ -15,10 +15,8 @@ import { problemsOf } from "./values.js";
 /** @import { Document } from "../state/document.js" */
 /** @import { Declaration } from "../plots/layout.js" */
 /** @typedef {{name: string, label: string, unit: string, time: number[], values: number[]}} Signal */
-/** @typedef {{element: string, state: string, intervals: [number, number][]}} Shaded */
-
-/** @type {{[state: string]: string}} */
-const SHADED = { stick: "sticks", open: "open" };
+/** The times in a state; `words` are a verb. @typedef {{element: string, state: string, words: string,
+ * intervals: [number, number][]}} Shaded */
 
 /** @param {{store: Store}} props */
 export function HistoryPanel({ store }) {
@@ -81,14 +79,15 @@ function declared(value, document) {
   };
 }
 
-/** What is shaded, with its names: that friction sticks before that gaps are open. @param {Shaded[]} shaded */
+/** What is shaded, with its names: the states that the library has words for. @param {Shaded[]} shaded */
 function shadesOf(shaded) {
-  const found = Object.keys(SHADED).map((state) =>
-    ({ state, those: shaded.filter((each) => each.state === state && each.intervals.length > 0) }));
+  const seen = shaded.filter(({ words, intervals }) => words !== "" && intervals.length > 0);
+  const found = [...new Set(seen.map(({ state }) => state))].map((state) =>
+    ({ state, those: seen.filter((each) => each.state === state) }));
   return {
     bands: found.flatMap(({ state, those }) => those.flatMap(({ intervals }) =>
       intervals.map(([from, to]) => ({ from, to, kind: state })))),
-    keys: found.flatMap(({ state, those }) => (those.length === 0 ? []
-      : [{ kind: state, text: `${those.map(({ element }) => element).join(" or ")} ${SHADED[state]}` }])),
+    keys: found.map(({ state, those }) =>
+      ({ kind: state, text: `${those.map(({ element }) => element).join(" or ")} ${those[0].words}` })),
   };
 }

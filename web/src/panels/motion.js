@@ -1,6 +1,6 @@
 // The vehicle in motion on its road: a picture that follows the clock, which is that of the plot of the motion too.
 
-import { isSearched, numbersOf, shownElement } from "../library.js";
+import { isSearched, numbersOf, outlineOf, shownElement } from "../library.js";
 import { layoutColour } from "../plots/colours.js";
 import { Chip } from "../parts/controls.js";
 import { html, useEffect, useMemo, useRef } from "../parts/html.js";
@@ -80,7 +80,7 @@ function shownOf(state, mechanism, history) {
     motion: history?.motion?.time?.length > 1 ? history.motion : null,
     other,
     shaded: history?.shaded ?? [],
-    scene: scene(mechanism, document.study.vehicle?.model ?? ""),
+    scene: scene(mechanism, document.study.vehicle?.model, outlineOf(state, document.study.vehicle)),
     speed: numbersOf(state).find(({ place }) => place === SPEED)?.value ?? 0,
     own: layoutColour(document, design.layout),
     names: other ? { own: design.name, other: baseline.name } : null,

@@ -3,7 +3,7 @@
 import { Moving } from "../parts/clock.js";
 import { html, useEffect, useState } from "../parts/html.js";
 import { canonical } from "../network/algebra.js";
-import { kindNamed, recordSuffixes } from "../library.js";
+import { kindNamed, outlineOf, recordSuffixes } from "../library.js";
 import { drawing, pathOf } from "../network/drawing.js";
 import { open, openedBefore } from "../remembering.js";
 import { openStudy } from "../working.js";
@@ -90,20 +90,20 @@ const CAR = { bodies: ["M10 62q2-16 20-18l22-4q14-20 40-20h26q24 0 40 20l26 5q14
 /** @type {Outline} */
 const COACH = { bodies: ["M20 8h160q6 0 6 6v22q0 6 -6 6h-160q-6 0 -6 -6v-22q0 -6 6 -6z", "M28 78h48v6h-48z",
   "M124 78h48v6h-48z"], wheels: [38, 66, 134, 162], radius: 9, struts: [52, 148], top: 42, bottom: 78, width: 60 };
-/** @type {{[model: string]: Outline}} */
+/** @type {{[outline: string]: Outline}} */
 const OUTLINES = {
-  "quarter-car": { ...BLOCK, wheels: [100], radius: 13, bottom: 78 }, "half-car": CAR, "full-car": CAR,
+  corner: { ...BLOCK, wheels: [100], radius: 13, bottom: 78 }, car: CAR,
   absorber: { ...BLOCK, bodies: ["M76 8h48q6 0 6 6v8q0 6 -6 6h-48q-6 0 -6 -6v-8q0 -6 6 -6z",
     "M68 92V104M132 92V104M50 68h100q6 0 6 6v12q0 6 -6 6h-100q-6 0 -6 -6v-12q0 -6 6 -6z"], top: 28, bottom: 68 },
 };
 
-/** @param {any} vehicle */
-const outlineOf = (vehicle) => OUTLINES[vehicle?.model]
+/** @param {any} about @param {any} vehicle */
+const pictureOf = (about, vehicle) => OUTLINES[outlineOf({ about }, vehicle)]
   ?? (Object.keys(vehicle?.tyres ?? {}).length > 2 ? COACH : BLOCK);
 
 /** A strut below what it carries. @param {{about: any, example: Example}} props */
 function Picture({ about, example: { study, tree, kinds } }) {
-  const { bodies, wheels, radius, struts, ...place } = outlineOf(study.vehicle);
+  const { bodies, wheels, radius, struts, ...place } = pictureOf(about, study.vehicle);
   return html`<svg viewBox="0 0 200 112" aria-hidden="true">
     <path d=${`M0 ${GROUND}H200`} stroke="var(--road)" stroke-width="2" />
     ${bodies.map((path) => html`<path key=${path} d=${path} fill="var(--body)" stroke="var(--ink)" />`)}

@@ -15,16 +15,6 @@ const WORDS = { sprung: "body", unsprung: "wheel", primary: "primary mass" };
 /** A name as words. @param {string} name */
 export const inWords = (name) => WORDS[name] ?? name.replace(/^unsprung_/, "").replaceAll("_", " ");
 
-/** A mass with its unit. @param {number} mass [kg] */
-const massText = (mass) => (mass >= 1e4 ? `${Number((mass / 1e3).toPrecision(4))} t`
-  : `${Number(mass.toPrecision(5))} kg`);
-
-/** @param {number} value @param {string} unit */
-function quantity(value, unit) {
-  const [factor, prefix] = value >= 1e6 ? [1e6, "M"] : value >= 1e3 ? [1e3, "k"] : [1, ""];
-  return `${Number((value / factor).toPrecision(4))} ${prefix}${unit}`;
-}
-
 /** What stands beside things. @param {Layout} made @param {Moment} moment @param {Shape[]} into */
 export function name(made, moment, into) {
   const { scene } = made;
@@ -48,15 +38,14 @@ function nameBody(made, own, moment, into) {
     return /** @type {Point} */ ([x + px, y + 4]);
   };
   const words = of.kind === "table" ? "table" : inWords(of.name);
-  const weight = of.mass === null ? "" : massText(of.mass);
   const room = Math.min(-from, to); // to either side of the mark of its middle
-  const fits = LETTER * Math.max(words.length, weight.length) + 28 < room && thick >= 15;
+  const fits = LETTER * Math.max(words.length, of.weight.length) + 28 < room && thick >= 15;
   if (fits && of.kind !== "occupant" && !made.scene.oblique) {
-    into.push(text(...at(from + 12), words), text(...at(to - 12), weight, "text", "end"));
+    into.push(text(...at(from + 12), words), text(...at(to - 12), of.weight, "text", "end"));
     return;
   }
   if (made.scene.oblique && of.kind !== "occupant") {
-    into.push(text(at(0)[0] + 12, at(0)[1], `${words} ${weight}`, "beside"));
+    into.push(text(at(0)[0] + 12, at(0)[1], `${words} ${of.weight}`, "beside"));
     return;
   }
   if (made.scene.oblique) {
@@ -64,18 +53,17 @@ function nameBody(made, own, moment, into) {
     into.push(text(x, y - 0.52 * thick - 6, words, "text", "middle"));
     return;
   }
-  const wide = LETTER * Math.max(words.length, weight.length) + 8;
+  const wide = LETTER * Math.max(words.length, of.weight.length) + 8;
   const left = made.project(of.x, of.y, 0)[0] + to + wide > made.width || (made.scene.column && of.kind === "body");
   const [x, y] = at(left ? from - 7 : of.kind === "occupant" ? 26 : to + 7);
   const anchor = left ? "end" : "start";
-  into.push(text(x, y - 7, words, "text", anchor), text(x, y + 8, weight, "quiet", anchor));
+  into.push(text(x, y - 7, words, "text", anchor), text(x, y + 8, of.weight, "quiet", anchor));
 }
 
 /** @param {Layout} made @param {Tyre} tyre @param {Moment} moment @param {Shape[]} into */
 function nameWheel(made, { x, y, port, body: of, network }, moment, into) {
   const [px, py] = point(made, x, y, made.radius, heightOf(port, moment.pose));
   const beside = px + made.radius + 12;
-  if (of.mass !== null) into.push(text(beside, py - 4, `${inWords(of.name)} ${massText(of.mass)}`, "beside"));
-  if (network.kind === "element") into.push(text(beside, py + 11, `tyre ${quantity(network.value, network.unit)}`,
-    "beside"));
+  if (of.mass !== null) into.push(text(beside, py - 4, `${inWords(of.name)} ${of.weight}`, "beside"));
+  if (network.kind === "element") into.push(text(beside, py + 11, `tyre ${network.text}`, "beside"));
 }

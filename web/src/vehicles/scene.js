@@ -7,12 +7,14 @@
 /** @typedef {{name: string, upper: End, lower: End, network: any}} MechanismStrut */
 /** @typedef {{name: string, port: Port, road: string, network: any}} MechanismTyre */
 /** The answer `mechanism` of the server.
- * @typedef {{coordinates: {name: string, inertia: number, angle: boolean, roll?: boolean}[], struts: MechanismStrut[],
- * tyres: MechanismTyre[], roads: {name: string, distance: number, side?: string}[]}} Mechanism */
+ * @typedef {{coordinates: {name: string, inertia: number, text: string, angle: boolean, roll?: boolean}[],
+ * struts: MechanismStrut[], tyres: MechanismTyre[],
+ * roads: {name: string, distance: number, side?: string}[]}} Mechanism */
 /** `heave`: the coordinate, or the road, that carries its middle; without one it turns about a place that is fixed.
  * `level`: how many bodies are below it.
  * @typedef {{name: string, kind: "body" | "wheel" | "beam" | "occupant" | "table", heave: string | null,
- * pitch: string | null, roll: string | null, mass: number | null, x: number, y: number, level: number}} Body */
+ * pitch: string | null, roll: string | null, mass: number | null, weight: string, x: number, y: number,
+ * level: number}} Body */
 /** Where something is fastened: to a body, so far ahead and to the left of its middle; a lever takes `ratio` of the
  * motion. To several bodies, to the ground (`body` is null), or to the travels of others (`over`).
  * @typedef {{port: Port, body: Body | null, ratio: number, ahead: number, aside: number, over: Body[]}} Place */
@@ -32,11 +34,10 @@
 const APART = 1.2; // [m] between bodies of which nothing says where they are
 const TRACK = 1.5; // [m] between both sides, where nothing says how far they are apart
 const SAME = 1e-6; // [m]
-const CARS = ["half-car", "full-car"]; // that are drawn with the outline of a car
 
 /** The scene of a mechanism at rest. @param {Mechanism} mechanism @param {string} model of the vehicle
- * @returns {Scene} */
-export function scene(mechanism, model = "") {
+ * @param {string} outline as which the library declares it to be drawn @returns {Scene} */
+export function scene(mechanism, model = "", outline = "") {
   const bodies = bodiesOf(mechanism);
   /** @param {Port} port */
   const place = (port) => placeOf(port, bodies);
@@ -65,7 +66,7 @@ export function scene(mechanism, model = "") {
   return {
     model, bodies, struts, links, tyres, tracks,
     oblique: spread(across) > SAME,
-    silhouette: CARS.includes(model),
+    silhouette: outline === "car",
     frontal: spread(along) > SAME && spread(tracks.map(({ distance }) => distance)) < SAME,
     rear: Math.min(...tyres.map(({ x }) => x)),
     wheelbase: spread(tyres.map(({ x }) => x)),
@@ -98,11 +99,11 @@ function bodiesOf({ coordinates, struts, tyres, roads }) {
     const most = found.reduce((best, each) => (each.times > best.times ? each : best), { heave: "", times: 0 });
     if (most.times > 0) owners.set(name, most.heave);
   }
-  const blank = { pitch: null, roll: null, x: 0, y: 0, level: 0 };
+  const blank = { pitch: null, roll: null, weight: "", x: 0, y: 0, level: 0 };
   /** @type {Body[]} */
   const bodies = [
-    ...heaves.map(({ name, inertia }) => ({ ...blank, kind: /** @type {const} */ ("body"), name, heave: name,
-      mass: inertia })),
+    ...heaves.map(({ name, inertia, text }) => ({ ...blank, kind: /** @type {const} */ ("body"), name, heave: name,
+      mass: inertia, weight: text })),
     ...angles.filter(({ name }) => !owners.has(name)).map(({ name }) => ({ ...blank,
       kind: /** @type {const} */ ("body"), name, heave: null, pitch: name, mass: null })),
     ...driven.map(({ name }) => ({ ...blank, kind: /** @type {const} */ ("table"), name, heave: name, mass: null })),

@@ -13,6 +13,7 @@ from inerter.figures.labels import axis_label
 from inerter.figures.plots.axes import add_legend_above, single_axes
 from inerter.figures.style import colour, new_figure, style_context
 from inerter.formatting import capital, choose_scale, format_range
+from inerter.networks.elements.registry import middle_phrases
 from inerter.simulation.trajectory import Trajectory
 from inerter.validation import checked
 
@@ -114,5 +115,5 @@ def _shade(run: Trajectory, window: tuple[float, float], ax: Axes) -> None:
         for state, fill in _SHADES.items():
             for begin, end in run.intervals(element, state):
                 if begin < window[1] and end > window[0]:
-                    label = f"{element} {'sticks' if state == 'stick' else 'is open'}"
+                    label = f"{element} {middle_phrases()[state]}"
                     ax.axvspan(begin, end, color=fill, linewidth=0.0, zorder=0.5, label=label)

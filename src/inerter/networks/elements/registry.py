@@ -28,6 +28,15 @@ def kinds_by_unit() -> dict[str, type[Element]]:
     return told
 
 
+def middle_phrases() -> dict[str, str]:
+    """Verb phrases of the middle states of switching elements, by the names of these states.
+
+    >>> middle_phrases()
+    {'stick': 'sticks', 'open': 'is open'}
+    """
+    return {kind.switch.middle: kind.switch.middle_phrase for kind in ELEMENTS.values() if kind.switch}
+
+
 def format_unit_kinds() -> str:
     """Kinds of elements by unit, in words, such as "N/m spring"."""
     notes = {kind: f" ({kind.unit_note})" if kind.unit_note else "" for kind in kinds_by_unit().values()}

@@ -73,9 +73,14 @@ class SwitchRole:
     at_middle: str = ""  # verb phrase of the middle state, for use after the name; default: "is ..."
     spent: tuple[str, str, str] | None = None  # such as "stuck", in the order of the states
 
+    @property
+    def middle_phrase(self) -> str:
+        """Verb phrase of the middle state."""
+        return self.at_middle or f"is {self.middle}"
+
     def middle_state_text(self, name: str) -> str:
         """Clause that an element of this name is in its middle state."""
-        return f"{name} {self.at_middle or f'is {self.middle}'}"
+        return f"{name} {self.middle_phrase}"
 
     def time_in(self, state: str) -> str:
         """Name of a state in reports of the share of time."""

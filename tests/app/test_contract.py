@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+import page_numbers
 import pytest
 from app.conftest import DOCUMENT, ask, changed
 from campaigns import sampled
@@ -560,3 +561,8 @@ def test_a_device_without_a_network_is_refused(client: TestClient, device: dict[
     answer = client.post("/api/study/device", json=body)
     assert answer.status_code == 400
     assert "it has no network" in answer.json()["sentence"]
+
+
+def test_tests_of_the_page_have_the_numbers_of_the_library() -> None:
+    """Tests of the page that have no server compare what it writes with what `page_numbers` has written."""
+    assert json.loads(page_numbers.FIXTURE.read_text(encoding="utf-8")) == page_numbers.fixture()

@@ -29,7 +29,7 @@ SIZES = {"m/s²": 0, "N": 0, "kN": 3, "mm/N": -3, "µm/N": -6}  # powers of ten 
 
 def _read(text: str, head: str) -> float:
     """The last number of a cell, as it is written, in SI."""
-    mantissa, power = re.findall(r"(-?[0-9.]+)(?:·10(-?[0-9]+))?", text.translate(POWERS).replace(" %", ""))[-1]
+    mantissa, power = re.findall(r"(-?[0-9.]+)(?: × 10(-?[0-9]+))?", text.translate(POWERS).replace(" %", ""))[-1]
     unit = head.partition("[")[2].rstrip("]")
     return float(f"{mantissa}e{int(power or 0) + SIZES[unit]}")
 

@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { after, empty, textOf } from "../src/state/document.js";
 import {
@@ -14,6 +15,8 @@ import {
   completed,
   estimated,
   placed,
+  printed,
+  unitFor,
   withUnit,
 } from "../src/state/scale.js";
 import { documentFrom } from "../src/remembering.js";
@@ -201,14 +204,23 @@ test("quantities come apart and together as they are written", () => {
   assert.equal(brief("10000000.0 N/m", about, "N/m"), "10 MN/m");
   assert.equal(brief("3200000 N/m", about, "kg"), "3200000 N/m");
   assert.equal(brief("3200 N/m", about, "N/m"), "3200 N/m"); // as it was written
-  assert.equal(shown(-6.4525e-5), "−6.4525·10⁻⁵");
+  assert.equal(shown(-6.4525e-5), "−6.4525 × 10⁻⁵");
   assert.equal(shown(null), "–");
+});
+
+test("numbers and their units are written as the library writes them", () => {
+  const { numbers, units, suited } = JSON.parse(readFileSync(new URL("numbers.json", import.meta.url), "utf8"));
+  for (const [number, digits, text] of numbers) assert.equal(shown(number, digits), text, `${number}, ${digits} digits`);
+  for (const [unit, size, factor, text] of suited) {
+    const found = unitFor({ units }, [size], unit);
+    assert.deepEqual([found.factor, printed(found.unit)], [factor, text], `${size} ${unit}`);
+  }
 });
 
 test("numbers in a column have as many digits, zeros at the end too", () => {
   const numbers = [523, 520.93, 5.37e-5, -0.05, 0, 12000, 1, 2e6, null, 0.001];
   assert.deepEqual(numbers.map((number) => aligned(number, 4)),
-    ["523.0", "520.9", "5.370·10⁻⁵", "−0.05000", "0", "12000", "1.000", "2.000·10⁶", "–", "0.001000"]);
+    ["523.0", "520.9", "5.370 × 10⁻⁵", "−0.05000", "0", "12000", "1.000", "2000000", "–", "0.001000"]);
 });
 
 test("a symbol has a subscript, a word has none", () => {
@@ -325,8 +337,8 @@ test("a value has as many places as its error tells", () => {
     "503.88 ± 0.09",
     "16.024 ± 0.014",
     "−0.290 ± 0.007",
-    "6.6506·10⁻⁵ ± 0.0002·10⁻⁵",
-    "1.20·10⁷ ± 0.03·10⁷",
+    "6.6506 × 10⁻⁵ ± 0.0002 × 10⁻⁵",
+    "1.20 × 10⁷ ± 0.03 × 10⁷",
     "0.00 ± 0.02",
     "4 ± 30",
   ];
@@ -339,7 +351,7 @@ test("a value has as many places as its error tells", () => {
 test("a value has no more places than its error bound leaves", () => {
   assert.equal(estimated(2.50911, 0.00047, 3).join(" ± "), "2.5091 ± 0.0005");
   assert.equal(estimated(16.0237, 0.0137, 2).join(" ± "), "16.02 ± 0.01");
-  assert.equal(estimated(1.2e7, 1.3e5, -6).join(" ± "), "1.20·10⁷ ± 0.01·10⁷");
+  assert.equal(estimated(1.2e7, 1.3e5, -6).join(" ± "), "1.20 × 10⁷ ± 0.01 × 10⁷");
   const written = [
     [2.50911, 2],
     [503.88, -1],
@@ -352,7 +364,7 @@ test("a value has no more places than its error bound leaves", () => {
   ];
   assert.deepEqual(
     written.map(([value, places]) => placed(value, places)),
-    ["2.51", "500", "6.65·10⁻⁵", "−0.29000", "1.0680", "0", "4.5", "–"],
+    ["2.51", "500", "6.65 × 10⁻⁵", "−0.29000", "1.0680", "0", "4.5", "–"],
   );
 });
 

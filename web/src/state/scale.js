@@ -4,6 +4,7 @@ import { own } from "./document.js";
 
 export const STEPS = 400;
 const SMALL = 1e-4; // below it, zeros after the point are hard to count
+const PLAIN = 9; // digits before the point up to which a number has no power of ten
 const NUMBER = /^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$/;
 
 /** @typedef {{number: number, unit: string}} Written */
@@ -61,25 +62,39 @@ export function positionOf(value, lower, upper) {
 /** @param {number} position @param {number} lower @param {number} upper */
 export const valueAt = (position, lower, upper) => lower * (upper / lower) ** (position / STEPS);
 
-/** A number as answers show it. @param {number | null | undefined} number @param {number} digits */
+/** A number as answers show it, by the rules of the library: with a power of ten only far from 1.
+ * @param {number | null | undefined} number @param {number} digits */
 export function shown(number, digits = 5) {
-  if (number === null || number === undefined || Number.isNaN(number)) return "–";
-  const size = Math.abs(number);
-  if (size !== 0 && (size >= 1e6 || size < 1e-3)) {
-    const [mantissa, power] = number.toExponential(digits - 1).split("e");
-    return `${minus(Number(mantissa))}·10${superscript(String(Number(power)))}`;
-  }
-  return minus(Number(number.toPrecision(digits)));
+  const [mantissa, ten] = mantissaAndTen(number, digits);
+  return mantissa === "1" && ten !== "" ? ten : joined(mantissa, ten);
 }
 
 /** A number with so many digits, zeros at the end too, as in the columns of a table.
  * @param {number | null | undefined} number @param {number} digits */
 export function aligned(number, digits) {
-  const text = shown(number, digits);
-  const missing = digits - text.replace(/·.*/, "").replace(/^\D*0*\.?0*|\D/g, "").length;
-  if (missing <= 0 || !/[1-9]/.test(text)) return text;
-  return text.replace(/^(−?\d+)(\.\d+)?/, (_, whole, part = ".") => `${whole}${part}${"0".repeat(missing)}`);
+  const [text, ten] = mantissaAndTen(number, digits);
+  const missing = digits - text.replace(/^\D*0*\.?0*|\D/g, "").length;
+  const padded = missing <= 0 || !/[1-9]/.test(text) ? text
+    : text.replace(/^(−?\d+)(\.\d+)?/, (_, whole, part = ".") => `${whole}${part}${"0".repeat(missing)}`);
+  return joined(padded, ten);
 }
+
+/** A number, and the power of ten behind it, if it has one. @param {number | null | undefined} number
+ * @param {number} digits @returns {[string, string]} */
+function mantissaAndTen(number, digits) {
+  if (number === null || number === undefined || Number.isNaN(number)) return ["–", ""];
+  const rounded = Number(number.toPrecision(digits));
+  const isNear = Math.abs(rounded) >= SMALL && Math.abs(number) < 10 ** Math.max(digits, PLAIN);
+  if (rounded === 0 || isNear) return [minus(rounded), ""];
+  const [mantissa, power] = number.toExponential(digits - 1).split("e");
+  return [minus(Number(mantissa)), tenTo(Number(power))];
+}
+
+/** @param {string} mantissa @param {string} ten */
+const joined = (mantissa, ten) => (ten === "" ? mantissa : `${mantissa} × ${ten}`);
+
+/** @param {number} power */
+const tenTo = (power) => `10${superscript(String(power))}`;
 
 /** Values of a design in few digits, in units that suit them; those `at` a bound have a star.
  * @param {any} about @param {{[name: string]: unknown}} texts @param {object} [at] */
@@ -107,9 +122,8 @@ export function estimated(value, error, most = Infinity) {
   const one = -Number(leading.split("e")[1]);
   const wanted = one + (leading.startsWith("1") ? 1 : 0);
   const places = Math.min(20, Math.max(0, one, Math.min(wanted, most + (far ? power : 0))));
-  const times = far ? `·10${superscript(String(power))}` : "";
   /** @param {number} each */
-  const written = (each) => each.toFixed(places).replace("-", "−") + times;
+  const written = (each) => joined(each.toFixed(places).replace("-", "−"), far ? tenTo(power) : "");
   return [written(number), written(scatter)];
 }
 

@@ -324,6 +324,10 @@ def test_each_place_that_is_told_can_be_swept(client: TestClient, name: str) -> 
         assert (name in offered) == isinstance(entry, str)
     for row in told:
         assert parse_quantity(row["text"], row["unit"]) == pytest.approx(row["value"], rel=1e-3)
+        ends = [parse_quantity(row[end], row["unit"]) for end in ("from", "to")]
+        assert ends == pytest.approx(sorted((row["value"] / 2, row["value"] * 2)), rel=1e-3)
+    beyond = ["." in row["place"] for row in told]
+    assert beyond == sorted(beyond)
 
 
 @pytest.mark.parametrize("name", ["absorber", "building_quake", "full-car"])

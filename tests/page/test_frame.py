@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -462,3 +463,19 @@ def test_nothing_is_optimised_where_there_is_no_layout(visitor: Visitor, tmp_pat
     page.wait_for_selector("text=bare.toml is open")
     for name in ("Find best O", "All layouts"):
         assert page.get_by_role("button", name=name).is_disabled()
+
+
+def test_the_keys_that_are_listed_join_each_kind_of_element(visitor: Visitor) -> None:
+    """The list names the keys of all kinds that the library declares, and each of them joins one."""
+    page = visitor.page
+    page.keyboard.press("?")
+    rows = page.locator("dialog .all-keys p", has_text="join in series").locator("kbd").all_text_contents()
+    assert rows == [kind[0].upper() for kind in it.ELEMENTS]
+    page.keyboard.press("Escape")
+    for key, symbol in zip(rows, (kind.symbol for kind in it.ELEMENTS.values()), strict=True):
+        before = page.input_value("#network-text")
+        page.locator(".drawing g.element[tabindex='0']").focus()
+        page.keyboard.press(key.lower())
+        page.wait_for_function("before => document.getElementById('network-text').value !== before", arg=before)
+        (new,) = set(re.findall(r"\w+", page.input_value("#network-text"))) - set(re.findall(r"\w+", before))
+        assert new.startswith(symbol)

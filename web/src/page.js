@@ -70,8 +70,8 @@ export function Page({ store, api, enter }) {
             <${MotionPanel} store=${store} api=${api} /><${Tabs} store=${store} api=${api} /></div>
           <div class="col">${values}</div>
         </main>`}
-    <footer class="keys"><${KeysOfFocus} /><${Standing} store=${store} api=${api} /></footer>
-    <${AllKeys} open=${keys} close=${() => setKeys(false)} />`;
+    <footer class="keys"><${KeysOfFocus} about=${state.about} /><${Standing} store=${store} api=${api} /></footer>
+    <${AllKeys} about=${state.about} open=${keys} close=${() => setKeys(false)} />`;
 }
 
 const ACTS = ["keydown", "click", "change", "submit"];

@@ -89,7 +89,7 @@ def about() -> dict[str, Any]:
         ],
         "export_note": f"{capital(WITHOUT_CONDITIONS)}.",
         "models": [*MODELS, CHOOSE],
-        "model_words": {**{name: model_words(name) for name in MODELS}, CHOOSE: CHOOSE_WORDS},
+        "model_words": {CHOOSE: CHOOSE_WORDS, **{name: model_words(name) for name in MODELS}},
         "record_suffixes": list(FORMATS),
         "examples": list(examples()),
     }

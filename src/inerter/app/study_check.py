@@ -79,7 +79,7 @@ def _limitable(study: Study) -> list[dict[str, Any]]:
 
 
 def _places(study: Study) -> list[dict[str, Any]]:
-    """Numbers of the study that can be swept."""
+    """Numbers of the study that can be swept, those of elements first, and from where to where they may be at first."""
     found = []
     for label, number in study.numbers.items():
         try:
@@ -87,9 +87,10 @@ def _places(study: Study) -> list[dict[str, Any]]:
         except EntryError:  # it is free, or makes no difference
             continue
         if isinstance(value, int | float):
-            text = format_quantity(value, number.unit)
-            found.append({"place": label, "words": number.words, "unit": number.unit, "value": value, "text": text})
-    return found
+            text, *ends = (format_quantity(each, number.unit) for each in (value, *sorted((0.5 * value, 2.0 * value))))
+            row = {"place": label, "words": number.words, "unit": number.unit, "value": value, "text": text}
+            found.append({**row, "from": ends[0], "to": ends[1]})
+    return sorted(found, key=lambda one: "." in one["place"])
 
 
 def _layouts(study: Study) -> dict[str, Any]:

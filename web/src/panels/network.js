@@ -9,6 +9,7 @@ import { isFreeNetwork, kindOf, layoutsWith, quickMethod, selectedElement, treeO
   from "../library.js";
 import { answerOf, strutTexts } from "../questions.js";
 import { Chip, DropDown, formHandler, textHandler } from "../parts/controls.js";
+import { letterOf } from "../parts/keys.js";
 import { symbolPath } from "./sketch.js";
 import { html, useEffect, useMemo, useRef, useState } from "../parts/html.js";
 
@@ -241,9 +242,6 @@ function Palette({ editing, off }) {
         ${kind.key} <kbd>${letterOf(kind)}</kbd></button>`)}
   </div>`;
 }
-
-/** The key that joins a new element of a kind. @param {ElementKind} kind */
-const letterOf = ({ key }) => key[0].toUpperCase();
 
 /** What else can be done to what is selected. @param {{editing: Editing, off: boolean, selected: Tree | null}} props */
 function PartMenu({ editing, off, selected }) {

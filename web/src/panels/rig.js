@@ -15,8 +15,6 @@ import { JobHead } from "./work.js";
 /** @import { Store, Job } from "../state/store.js" */
 /** @import { Api } from "../api.js" */
 
-const CHOOSE = "choose"; // the model that is chosen among all
-
 /** @param {{store: Store, api: Api}} props */
 export function RigPanel({ store, api }) {
   const state = store.get();
@@ -24,8 +22,8 @@ export function RigPanel({ store, api }) {
   const fits = Object.values(state.work).filter(({ kind }) => kind === "identify").toReversed();
   const suffixes = recordSuffixes(state);
   const words = state.about?.model_words ?? {};
-  const models = Object.keys(words).sort((one) => (one === CHOOSE ? -1 : 1));
-  const [model = CHOOSE, setModel] = useChoice(models);
+  const models = Object.keys(words);
+  const [model = "", setModel] = useChoice(models);
   return html`<div>
     <p class="quiet">Drop a measured record anywhere on the page (${suffixes.join(", ")}), or</p>
     <label class="file">choose one <input type="file" accept=${suffixes.join()} multiple

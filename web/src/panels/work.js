@@ -7,7 +7,7 @@ import { SearchForm, SearchResult, AddFreeNetwork, searchBody } from "./search.j
 import { SweepResult } from "./sweep.js";
 import { Select, Table, formHandler, showNewest } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { placed, printed, quantity, scaled, takenApart, unitFor, valuesIn } from "../state/scale.js";
+import { placed, printed, scaled, unitFor, valuesIn } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { isSearched, searchedLayouts } from "../library.js";
@@ -156,28 +156,22 @@ function writtenIn(row, { unit, factor }) {
   return html`${placed(value, decimals)} <span class="unit">${printed(unit)}</span>`;
 }
 
-/** The numbers that can be swept: elements, and then what else the study has. @param {State} state
- * @returns {{place: string, words: string, text: string}[]} */
-function sweepable(state) {
-  /** @type {{place: string, words: string, text: string}[]} */
-  const numbers = answerOf(state, "check").value?.places ?? [];
-  return numbers.filter(({ text }) => takenApart(text) !== null)
-    .toSorted((one, other) => Number(one.place.includes(".")) - Number(other.place.includes(".")));
-}
+/** The numbers that can be swept, and from where to where at first. @param {State} state
+ * @returns {{place: string, words: string, from: string, to: string}[]} */
+const sweepable = (state) => answerOf(state, "check").value?.places ?? [];
 
 /** @param {{store: Store}} props */
 function SweepForm({ store }) {
   const numbers = sweepable(store.get());
   const [place, setPlace] = useState("");
   const chosen = numbers.find((each) => each.place === place) ?? numbers[0];
-  const { number, unit } = /** @type {{number: number, unit: string}} */ (takenApart(chosen.text));
-  /** @param {string} name @param {number} value */
-  const bound = (name, value) => html`<label>${name} <input name=${name} class="entry"
-    key=${`${name} ${chosen.place}`} defaultValue=${quantity(value, unit)} /></label>`;
+  /** @param {"from" | "to"} name */
+  const bound = (name) => html`<label>${name} <input name=${name} class="entry"
+    key=${`${name} ${chosen.place}`} defaultValue=${chosen[name]} /></label>`;
   return html`<${Select} label="of" name="of" value=${chosen.place} set=${setPlace}
       choices=${numbers.map(({ place: of, words }) => [of, words === of ? of : `${of}: ${words}`])} />
-    ${bound("from", number / 2)}
-    ${bound("to", number * 2)}
+    ${bound("from")}
+    ${bound("to")}
     <label>points <input name="points" type="number" min="2" max="100000" defaultValue="16" /></label>`;
 }
 

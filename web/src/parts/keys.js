@@ -1,12 +1,14 @@
 // The keys of the page: a table by what has the focus, for the lowest line and for the list of all of them.
 import { html, useEffect, useRef, useState } from "./html.js";
 
+const LETTERS = "letters"; // stands for those of the kinds of elements
+
 /** Of each place its keys and what they do. @type {{[place: string]: [string, string][]}} */
 const KEYS = {
   Page: [["1 2 3 4", "steps"], ["V", "verdict"], ["O", "find best"], ["Space", "hold the car"],
     ["Ctrl Z", "undo"], ["Ctrl Shift Z", "redo"], ["Ctrl O", "open"], ["Ctrl S", "save"], ["F8", "next message"],
     ["Esc", "close"], ["?", "all keys"]],
-  Drawing: [["← →", "select"], ["S D I F G", "join in series"], ["Shift + S D I F G", "in parallel"],
+  Drawing: [["← →", "select"], [LETTERS, "join in series"], [`Shift + ${LETTERS}`, "in parallel"],
     ["Alt ← →", "move"], ["Del", "remove"], ["F2", "name"], ["Esc", "select the group"]],
   Ranking: [["↑ ↓", "layout"], ["Enter", "edit it"]],
   Values: [["↑ ↓", "1 %"], ["Shift ↑ ↓", "10 %"], ["Alt ↑ ↓", "0.1 %"], ["Home", "best found"],
@@ -17,9 +19,16 @@ const KEYS = {
   Points: [["← →", "next point"], ["↑ ↓", "layout"], ["K", "knee"], ["Enter", "take"]],
 };
 
-/** @param {{place: string}} props */
-const Row = ({ place }) => KEYS[place].map(([keys, words]) => html`<span key=${words}>
-  ${keys.split(" ").map((key) => html`<kbd key=${key}>${key}</kbd> `)}${words} ${" "}</span>`);
+/** The key that joins a new element of a kind. @param {{key: string}} kind */
+export const letterOf = ({ key }) => key[0].toUpperCase();
+
+/** @param {{keys: string, about: any}} props */
+const Keys = ({ keys, about }) => keys.split(" ").flatMap((key) =>
+  (key === LETTERS ? (about?.elements ?? []).map(letterOf) : [key])).map((key) => html`<kbd key=${key}>${key}</kbd> `);
+
+/** @param {{place: string, about: any}} props */
+const Row = ({ place, about }) => KEYS[place].map(([keys, words]) => html`<span key=${words}>
+  <${Keys} keys=${keys} about=${about} />${words} ${" "}</span>`);
 
 /** Where the focus is. */
 function placeOfFocus() {
@@ -27,8 +36,8 @@ function placeOfFocus() {
   return inside && inside in KEYS ? inside : "Page";
 }
 
-/** The keys of what has the focus. */
-export function KeysOfFocus() {
+/** The keys of what has the focus. @param {{about: any}} props */
+export function KeysOfFocus({ about }) {
   const [place, setPlace] = useState("Page");
   const look = () => setPlace(placeOfFocus());
   useEffect(look); // what had the focus may be gone with what was drawn, of which no event tells
@@ -36,11 +45,11 @@ export function KeysOfFocus() {
     addEventListener("focusin", look);
     return () => removeEventListener("focusin", look);
   }, []);
-  return html`<span><b>${place}</b> ${" "}<${Row} place=${place} /></span>`;
+  return html`<span><b>${place}</b> ${" "}<${Row} place=${place} about=${about} /></span>`;
 }
 
-/** All keys, in a dialog that `open` shows. @param {{open: boolean, close: () => void}} props */
-export function AllKeys({ open, close }) {
+/** All keys, in a dialog that `open` shows. @param {{about: any, open: boolean, close: () => void}} props */
+export function AllKeys({ about, open, close }) {
   const dialog = useRef(/** @type {HTMLDialogElement | null} */ (null));
   useEffect(() => {
     if (open) dialog.current?.showModal();
@@ -50,7 +59,7 @@ export function AllKeys({ open, close }) {
     <p class="quiet">Single letters work where no text is typed.</p>
     <div class="all-keys">${open && Object.entries(KEYS).map(([place, rows]) => html`<div key=${place}><h3>${place}</h3>
       ${rows.map(([keys, words]) => html`<p key=${words}>
-        ${keys.split(" ").map((key) => html`<kbd>${key}</kbd> `)}${words}</p>`)}</div>`)}</div>
+        <${Keys} keys=${keys} about=${about} />${words}</p>`)}</div>`)}</div>
     <form method="dialog"><button class="edged">Close</button></form>
   </dialog>`;
 }

@@ -201,7 +201,8 @@ def test_limits_are_kept_or_broken(client: TestClient, method: str) -> None:
     assert {one["kept"] for one, _ in told[1:]} == {True, False}
     assert [one["kept"] for one in told[0]] == [True, True]
     for one in (limit for limits in told for limit in limits):
-        assert one["sentence"] == typeset(f"{'kept' if one['kept'] else 'broken'}: {one['title']}; it is {one['text']}")
+        kept = "kept" if one["kept"] else "broken"
+        assert one["sentence"] == f"{kept}: {one['title']}; it is {one['text']}"
 
 
 def test_a_limit_without_a_value_is_not_known(client: TestClient) -> None:

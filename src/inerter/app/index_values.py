@@ -20,7 +20,7 @@ from inerter.files.study.limits import (
 )
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity, in_words, typeset
+from inerter.formatting import format_quantity, in_words
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Estimate, Method, evaluate
 from inerter.optimisation.active_constraints import ConstraintResult
@@ -96,7 +96,7 @@ class DesignLimit:
             "value": self.estimate.value,
             "text": self.text,
             "kept": self.kept,
-            "sentence": typeset(self.sentence),
+            "sentence": self.sentence,
             **self.estimate.status.to_json(),
         }
 

@@ -79,7 +79,7 @@ def strut_with_device(document: Document, network: str, device: Document) -> dic
             names[name] = next(f"{name}{i}" for i in count(2) if f"{name}{i}" not in taken)
             taken.add(names[name])
     renamed = renamed_document(device, names)["study"]
-    own = renamed.get("elements") or {}
+    own = renamed["elements"] if entries else {}
     joined = next((text for text in Draft(renamed).networks.values() if "tree" in parse_network(text, own)), None)
     if joined is None:
         raise Refusal(400, "There is no device that could be taken: it has no network.")

@@ -150,7 +150,7 @@ class Study(Settings):
         index = self.index(name)
         if not self.conditions:
             return index
-        use = Conditions(condition_of(self, condition) for condition in self.conditions)
+        use = Conditions([condition_of(self, condition) for condition in self.conditions])
         return use.mean(index) if self.over == OVER[0] else use.worst(index)
 
     def in_condition(self, number: int) -> Study:

@@ -129,6 +129,11 @@ def test_lists_of_any_kind_are_accepted() -> None:
     plt.close(figure)
 
 
+def test_generators_are_iterables() -> None:
+    assert len(it.Conditions(it.Condition(1.0) for _ in range(2)).conditions) == 2
+    assert it.is_positive_real((c for c in (1.0,)), (c for c in (1.0, 1.0)))
+
+
 def test_arguments_that_raised_other_exceptions() -> None:
     with pytest.raises(it.InerterError, match=r"`parameter` must be a string, got array\(\[1., 2.\]\)"):
         it.break_even(None, None, None, parameter=np.array([1.0, 2.0]), method=it.Norm())

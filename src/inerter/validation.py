@@ -6,7 +6,7 @@ import functools
 import inspect
 import math
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from functools import partial
 from itertools import chain
 from numbers import Integral, Real
@@ -73,13 +73,13 @@ def is_flag(value: object) -> bool:
     return isinstance(value, bool) or type(value).__name__ == "bool"
 
 
-def is_listed(value: object) -> TypeGuard[Collection[Any]]:
+def is_listed(value: object) -> TypeGuard[Iterable[Any]]:
     """Whether `value` lists its parts: no text, and no array without dimensions.
 
     >>> is_listed([1.0]), is_listed("k"), is_listed(None)
     (True, False, False)
     """
-    return isinstance(value, Collection) and not isinstance(value, str | bytes) and getattr(value, "shape", None) != ()
+    return isinstance(value, Iterable) and not isinstance(value, str | bytes) and getattr(value, "shape", None) != ()
 
 
 def real_numbers(value: object) -> NDArray[np.float64] | None:
@@ -206,9 +206,18 @@ def _is_a(value: object, kind: str) -> bool:
             return callable(value)
         case "tuple[float, float]" | "tuple[str, str]":
             fits = is_number if "float" in kind else partial(_is_a, kind="str")
-            return is_listed(value) and len(pair := list(value)) == 2 and all(map(fits, pair))
+            return (
+                isinstance(value, Collection)
+                and is_listed(value)
+                and len(pair := list(value)) == 2
+                and all(map(fits, pair))
+            )
     if kind.startswith(_LIST):
-        return is_listed(value) and all(_is_a(part, kind[len(_LIST) : -1]) for part in value)
+        return (
+            isinstance(value, Collection)
+            and is_listed(value)
+            and all(_is_a(part, kind[len(_LIST) : -1]) for part in value)
+        )
     if kind.startswith(_MAPPING):
         parts = value.items() if isinstance(value, Mapping) else ((None, None),)
         return all(isinstance(name, str) and _is_a(part, kind[len(_MAPPING) : -1]) for name, part in parts)

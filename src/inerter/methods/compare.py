@@ -17,7 +17,6 @@ from inerter.methods.composite_index import IndexLike, is_composite
 from inerter.methods.method import AveragingMethod, Estimate, Method, MethodWithControls, evaluate
 from inerter.methods.ties import ACCURACY
 from inerter.notebook import shown_by
-from inerter.validation import is_listed
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import running_on
 
@@ -125,7 +124,7 @@ def compare(
     >>> round(two.percent, 1), two.percent_error < 0.02
     (-0.3, True)
     """
-    one, other = known if is_listed(known) and len(known) == 2 else (known, known)
+    one, other = known if isinstance(known, Sequence) and len(known) == 2 else (known, known)
     if not isinstance(one, Estimate | None) or not isinstance(other, Estimate | None):
         raise DesignError(f"`known` must be two estimates, or None in place of either, got {known!r}.")
     with running_on(executor):

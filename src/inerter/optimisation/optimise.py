@@ -47,6 +47,8 @@ _MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are evaluated, and searches fr
 _APART = 0.05  # logarithmic distance above which two starts of such searches are distinct
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _CONFIRMED = 1e-8  # relative difference up to which two codes have found the same value
+_LONELY = 1.0 / 6.0  # share of starts that end at optima of their own, from which on there may be many more of these
+_DENSER, _MORE = 4, 4  # logarithm to base two of how much denser a sample then is, and how many more starts it has
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
 
@@ -202,12 +204,18 @@ def _best(
         with within("best linear design", 0.0, 0.5 * _QUICK):
             linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
     first: list[Array] = []
+    lowest: list[float] = []  # of two searches that must agree, where there are many local optima
     compiled = _compiled_searches(vehicle, index, method, problem, starts, seed)
     if compiled is not None:
         found, evaluations = compiled, 0
     elif quick:
         first, evaluations = _starting_points(problem, starts, seed)
         found = _searches(problem, first)
+        if not problem.bounds and _has_many_optima(found):
+            for number in (1, 2):
+                further, tried = _denser_search(problem, starts, seed + number)
+                lowest.append(min((local.value for local in further), default=np.inf))
+                found, evaluations = found + further, evaluations + tried
     else:
         first = [] if linear is None else [linear]
         with within("quick approximation", 0.5 * _QUICK, _QUICK):
@@ -240,6 +248,8 @@ def _best(
     )
     estimate = over_linear.first if over_linear else _verify_estimate(estimate_of(design, index, method), best.value)
     estimate = with_limits(estimate, held)
+    if estimate.status.ok and max(lowest, default=0.0) > best.value * (1.0 + agreement):
+        estimate = replace(estimate, status=_many_optima_status(lowest, estimate.unit))
     if not best.excess <= kept:
         estimate = replace(estimate, status=infeasible(held, parameters, vehicle.mechanism().units()))
     return Optimum(
@@ -381,10 +391,36 @@ def check_free(vehicle: Vehicle) -> dict[str, Free]:
     return free
 
 
-def _starting_points(problem: ConstrainedProblem, starts: int, seed: int) -> tuple[list[Array], int]:
+def _has_many_optima(found: Sequence[LocalOptimum]) -> bool:
+    """Whether many searches ended at optima where no other did, as on the ripples that a delay makes at low speed.
+
+    Their share estimates the probability that a further search ends at an optimum that is not known yet (Good, 1953).
+    Where the optimum is flat, they end in several places with one value.
+    """
+    logarithms = np.log([local.value for local in found if np.isfinite(local.value)])
+    others = (np.abs(logarithms[:, None] - logarithms) < AGREEMENT).sum(axis=1) - 1
+    return int(np.sum(others == 0)) > max(_LONELY * len(found), 1)
+
+
+def _denser_search(problem: ConstrainedProblem, starts: int, seed: int) -> tuple[list[LocalOptimum], int]:
+    """Local optima from more starts of a denser sample, and the number of its evaluations."""
+    points, evaluations = _starting_points(problem, _MORE * starts, seed, denser=_DENSER)
+    return _searches(problem, points), evaluations
+
+
+def _many_optima_status(lowest: Sequence[float], unit: str) -> Status:
+    first, second = format_alike(lowest, unit)
+    message = (
+        f"two searches from independent starts found {first} and {second} among many local optima, so that a better "
+        "one may exist"
+    )
+    return Status(StatusKind.INACCURATE, message)
+
+
+def _starting_points(problem: ConstrainedProblem, starts: int, seed: int, denser: int = 0) -> tuple[list[Array], int]:
     """The lowest local minima of a sample: points that are lower than all their neighbours."""
     lower, upper = problem.lower, problem.upper
-    count = max(2 ** min(6 + lower.size, 12), 2 ** math.ceil(math.log2(starts)))
+    count = max(2 ** min(6 + denser + lower.size, 12 + denser // 2), 2 ** math.ceil(math.log2(starts)))
     unit = quasi_random_points(count, lower.size, seed)
     points = np.exp(np.log(lower) + unit * (np.log(upper) - np.log(lower)))
     report("samples", 0, len(points), share=0.0)

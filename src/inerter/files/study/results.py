@@ -216,7 +216,7 @@ def _enter_improvements(data: xr.Dataset, baseline: str, of: str = "") -> None:
         effects = data[f"{of}{EFFECT}"]
         other = effects.sel(layout=baseline, drop=True)
         errors = errors + _size(effects - other) - _size(effects) - _size(other)
-    widest = xr.where(of_base >= 1.0, np.inf, 100.0 * abs(values / base) * errors / (1.0 - of_base))
+    widest = (100.0 * abs(values / base) * errors / (1.0 - of_base)).where(of_base < 1.0, np.inf)
     data[f"{of}improvement_bound"][:] = widest.where(np.isfinite(errors * values / base)).transpose(*values.dims).values
 
 

@@ -529,26 +529,30 @@ def test_a_free_network_to_begin_with_can_be_searched(client: TestClient) -> Non
 DEVICE = {"elements": {"b": "113 kg", "g": "0.1 mm", "c": "3 kN s/m"}, "layouts": {"rig": "(b | c) - g"}}
 
 
+PARALLEL = "in parallel with the strut"
+
+
 @pytest.mark.parametrize(
-    ("network", "parallel", "series", "damper"),
+    ("network", "struts"),
     [
-        ("k | c", "k | c | (b2 | c2) - g", "k | c - ((b2 | c2) - g)", "c"),
-        ("k | c - (b | f)", "k | c - (b | f) | (b2 | c2) - g", "k | c - ((b2 | c2) - g) - (b | f)", "c"),
-        ("k", "k | (b2 | c2) - g", None, None),
-        ("", "(b2 | c2) - g", None, None),
-        ("k | c - (", "k | c - ( | (b2 | c2) - g", None, None),  # as it is being typed
+        ("k | c", {PARALLEL: "k | c | (b2 | c2) - g", "in series with c": "k | c - ((b2 | c2) - g)"}),
+        ("k | c - b", {"in place of b": "k | c - ((b2 | c2) - g)"}),
+        ("(k | f) - b", {"in place of b": "(k | f) - ((b2 | c2) - g)"}),
+        ("k", {PARALLEL: "k | (b2 | c2) - g"}),
+        ("", {PARALLEL: "(b2 | c2) - g"}),
+        ("k | c - (", {PARALLEL: "k | c - ( | (b2 | c2) - g"}),  # as it is being typed
     ],
 )
-def test_a_device_joins_a_strut(
-    client: TestClient, network: str, parallel: str, series: str | None, damper: str | None
-) -> None:
-    """In parallel, and in series with its first damper, as the networks that these texts name."""
+def test_a_device_joins_a_strut(client: TestClient, network: str, struts: dict[str, str]) -> None:
+    """In place of an inerter, else in parallel, and in series with its first damper, as the networks of these texts."""
     told = ask(client, "study/device", study=DOCUMENT, network=network, device=DEVICE)
     assert told["elements"] == {"b2": "113 kg", "g": "0.1 mm", "c2": "3 kN s/m"}
-    assert (told["parallel"], told["damper"]) == (parallel, damper)
-    assert (told["series"] is None) == (series is None)
-    if series is not None:
-        assert replace_in_expression(told["series"], {}) == replace_in_expression(series, {})
+    found = {one["words"]: one["network"] for one in told["struts"]}
+    assert list(found) == list(struts)
+    assert found.pop(PARALLEL, None) == struts.pop(PARALLEL, None)
+    assert [replace_in_expression(one, {}) for one in found.values()] == [
+        replace_in_expression(one, {}) for one in struts.values()
+    ]
 
 
 def test_a_device_keeps_names_of_equal_elements_and_avoids_those_of_others(client: TestClient) -> None:
@@ -556,7 +560,7 @@ def test_a_device_keeps_names_of_equal_elements_and_avoids_those_of_others(clien
     device = {"elements": {"k": "20 kN/m", "b": "1 kg", "b2": "2 kg"}, "layouts": {"rig": "k | b - b2"}}
     told = ask(client, "study/device", study=DOCUMENT, network="c", device=device)
     assert told["elements"] == {"k": "20 kN/m", "b3": "1 kg", "b2": "2 kg"}
-    assert told["parallel"] == "c | k | b3 - b2"
+    assert told["struts"][0]["network"] == "c | k | b3 - b2"
 
 
 @pytest.mark.parametrize("device", [{}, {"elements": {"b": "1 kg"}}, {"layouts": {"rig": "b - ("}}, {"layouts": 5}])

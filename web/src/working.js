@@ -199,33 +199,31 @@ export function takeNetwork(store, found, row) {
   return `${doubts}The layout ${layout} has the network ${row.network}.`;
 }
 
-/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own, and in another
- * one in series with the first damper of that strut; what would have the name of another element gets a new one.
- * Returns what to tell. @param {Store} store @param {Api} api
+/** A device, as the tables of a file have it, joins the strut that is edited, in a layout of its own for each way in
+ * which it may; what would have the name of another element gets a new one. Returns what to tell.
+ * @param {Store} store @param {Api} api
  * @param {{elements?: {[name: string]: any}, layouts?: {[layout: string]: any}}} device
  * @param {string} [strut] another strut than the one that is edited */
 export async function takeDevice(store, api, { elements = {}, layouts = {} }, strut = "") {
   const texts = strutTexts(store.get());
   const document = store.get().history.present;
   if (document.layout === "") return "Open a study first: the device joins its strut.";
-  const { parallel, series, damper, ...device } = await api.post("study/device", { study: document.study,
+  /** @type {{elements: {[name: string]: any}, struts: {words: string, network: string}[]}} */
+  const { elements: added, struts } = await api.post("study/device", { study: document.study,
     network: strut ? texts[strut] : textOf(document), device: { elements, layouts } });
   if (store.get().history.present !== document) return "The study was changed meanwhile; take the device again.";
-  const name = nextLayout(document);
   const gesture = Symbol("device");
-  store.change({ type: "layoutAdded", name }, gesture);
-  if (strut) store.change({ type: "strutsParted", texts, strut }, gesture);
-  store.change({ type: "drawn", text: parallel, added: device.elements }, gesture);
-  let also = "";
-  if (series) { // where an inerter helps is not known before: both are ranked
-    const second = nextLayout(store.get().history.present);
-    store.change({ type: "layoutAdded", name: second }, gesture);
-    store.change({ type: "drawn", text: series, added: {} }, gesture);
-    store.change({ type: "selected", layout: name, strut: store.get().history.present.strut }, gesture);
-    also = `, and in ${second}, in series with ${damper}`;
-  }
-  return `The device is in the new layout ${name}, in parallel with the ${strutWords([strut || "strut"])} of ${
-    document.layout}${also}. To join another strut: undo, select its layout, take the device again.`;
+  const told = struts.map(({ words, network }, number) => {
+    const name = nextLayout(store.get().history.present);
+    store.change({ type: "layoutAdded", name }, gesture);
+    if (strut && number === 0) store.change({ type: "strutsParted", texts, strut }, gesture);
+    store.change({ type: "drawn", text: network, added }, gesture);
+    return { name, words };
+  });
+  store.change({ type: "selected", layout: told[0].name, strut: store.get().history.present.strut }, gesture);
+  return `The device is in the new layout ${told.map(({ name, words }) => `${name}, ${words}`).join(", and in ")}. It ${
+    ""}joins the ${strutWords([strut || "strut"])} of ${document.layout}; to join another strut, undo, select its ${
+    ""}layout, and take the device again.`;
 }
 
 /** A fitted device joins the strut, if its values are given; returns what to tell, first whether it can be relied on.

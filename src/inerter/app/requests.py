@@ -203,7 +203,7 @@ ENDPOINTS: tuple[Endpoint, ...] = (
         "POST",
         "/api/study/device",
         "A strut with a device in it",
-        lambda server, request, body: study_parts.strut_with_device(body.study, body.network, body.device),
+        lambda server, request, body: study_parts.struts_with_device(body.study, body.network, body.device),
         bodies.DeviceInStrut,
     ),
     Endpoint("POST", "/api/study/write", "A document as a study file", _write, bodies.WriteStudy),

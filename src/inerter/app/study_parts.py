@@ -63,11 +63,11 @@ def _number(written: WrittenNumber) -> dict[str, Any]:
     }
 
 
-def strut_with_device(document: Document, network: str, device: Document) -> dict[str, Any]:
-    """A strut with a device in parallel, and with it in series with its first damper, since either may be the better.
+def struts_with_device(document: Document, network: str, device: Document) -> dict[str, Any]:
+    """Struts that a device joins: in place of its first inerter, else in parallel, and in series with its first damper.
 
-    Elements of the device get new names where the document has others of theirs. Raises `Refusal` for a device
-    without a network, or with elements that cannot be renamed.
+    Of the last two either may be the better. Elements of the device get new names where the document has others of
+    theirs. Raises `Refusal` for a device without a network, or with elements that cannot be renamed.
     """
     known = Draft(document).elements
     given, entries = document.get("elements"), device.get("elements")
@@ -83,15 +83,17 @@ def strut_with_device(document: Document, network: str, device: Document) -> dic
     joined = next((text for text in Draft(renamed).networks.values() if "tree" in parse_network(text, own)), None)
     if joined is None:
         raise Refusal(400, "There is no device that could be taken: it has no network.")
-    inside = (name for name in parse_network(network, None).get("names", ()) if name in known)
-    damper = next((name for name in inside if known[name].linear is LinearRole.DAMPING), None)
-    series = None if damper is None else replace_in_expression(network, {damper: f"{damper} - ({joined})"})
-    return {
-        "elements": own,
-        "parallel": f"{network} | {joined}" if network.strip() else joined,
-        "series": series,
-        "damper": damper,
-    }
+    inside = [name for name in parse_network(network, None).get("names", ()) if name in known]
+    first = {known[name].linear: name for name in reversed(inside)}
+    inerter, damper = first.get(LinearRole.MASS), first.get(LinearRole.DAMPING)
+    if inerter is not None:
+        struts = [(f"in place of {inerter}", replace_in_expression(network, {inerter: joined}))]
+    else:
+        struts = [("in parallel with the strut", f"{network} | {joined}" if network.strip() else joined)]
+        if damper is not None:
+            in_series = replace_in_expression(network, {damper: f"{damper} - ({joined})"})
+            struts.append((f"in series with {damper}", in_series))
+    return {"elements": own, "struts": [{"words": words, "network": text} for words, text in struts]}
 
 
 def renamed_document(document: Document, names: Mapping[str, str]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from inerter.norms.response import resonant_range
 
 pytest.importorskip("flint", reason='Exact responses: pip install "inerter[test]".')
 from exact_responses import at, deviation, of_matrices, of_mechanism
+from flint import acb, acb_mat
 
 FORMS = ("state-space", "descriptor")
 MEMBERS = list(product((4, 8, 12), range(100)))
@@ -59,6 +60,21 @@ def test_matrices_are_right_or_say_what_they_lose(decades: int, seed: int) -> No
             expected = of_mechanism(mechanism, s, [one.name for one in system.outputs], inputs)
             assert deviation(of_matrices(system, s), expected) <= max(1e-9, 1.1 * system.rounding)
         assert (system.rounding > 1e-9) == any("Rounding of these matrices" in note for note in system.notes)
+
+
+@pytest.mark.parametrize(("decades", "seed"), sampled(MEMBERS, LOST, kept=4))
+def test_frequency_responses_have_their_digits(decades: int, seed: int) -> None:
+    """Against nodal equations in 700 bits, at resonances, between them and beyond."""
+    mechanism = design(decades, seed)
+    try:
+        system = it.state_space(mechanism)
+    except it.InerterError as error:
+        assert "so far apart" in str(error) or "decades apart" in str(error)  # noqa: PT017
+        return
+    omega = resonant_range([system.A])[7::60]
+    expected = of_mechanism(mechanism, at(omega), list(system.outputs), list(system.inputs))
+    found = [acb_mat(*M.shape, [acb(z.real, z.imag) for z in M.ravel()]) for M in it.frequency_response(system, omega)]
+    assert deviation(found, expected) <= 2e-9
 
 
 def test_a_design_beyond_doubles_is_refused_with_the_way_out() -> None:

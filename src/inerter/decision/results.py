@@ -12,6 +12,8 @@ from inerter.formatting import capital, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
 from inerter.methods.ties import equally_least
 
+_LARGE_ERRORS = "errors as large as the values"
+
 
 @dataclass(frozen=True)
 class Improvement:
@@ -48,7 +50,9 @@ class Improvement:
 
     def than(self, other: str) -> str:
         """Comparison with the other design in words, to follow "is": "5 % better than S1", "as good as S1"."""
-        return f"as good as {other}" if self.is_equal else f"{self.words} than {other}"
+        if not self.is_equal:
+            return f"{self.words} than {other}"
+        return f"as good as {other}{f' within {_LARGE_ERRORS}' if self.bound == inf else ''}"
 
 
 def percent_below(value: float, base: float) -> float:

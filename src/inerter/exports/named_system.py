@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import ExportError, LinearSystemError
 from inerter.exports.refusals import delay_notes, refuse_nonlinear
 from inerter.formatting import format_number
-from inerter.norms.response import frequency_response, resonant_range
+from inerter.norms.response import frequency_response, relative_rounding, resonant_range, rounding_of_response
 from inerter.systems.assemble import state_space
 from inerter.systems.descriptor import Descriptor, describe, describe_with_parameters
 from inerter.systems.exact_matrices import close_exactly, rounded_stacks
@@ -32,10 +32,8 @@ if TYPE_CHECKING:
 
 Matrix = NDArray[np.float64]
 FORMS = ("state-space", "descriptor")
-_HALF_DIGIT = float(np.finfo(float).eps) / 2.0
 _GROWTH = 1e-3  # of the oscillations at which rounding is looked at, a radian
 _EVERY = 6  # frequencies of `resonant_range`
-_SILENT = 1e-12  # of the largest response of an output: what responds less is measured by that
 _TOLD_ROUNDING, _MOST_ROUNDING = 1e-9, 1e-6  # of the largest response: more is told by a note, or refused
 
 
@@ -229,22 +227,12 @@ def _bound_rounding(model: NamedSystem, omega: Matrix, doubt: Matrix | float) ->
     `doubt` are errors of the entries of [A B; C D] beside rounding. At s = (j + 0.001) omega: an oscillation that grows
     a little has a finite response at an undamped pole, of which no digit would be left on the axis itself.
     """
-    A, B, C, D = model.A, model.B, model.C, model.D
-    off = _HALF_DIGIT * np.abs(np.block([[A, B], [C, D]])) + doubt
+    matrices = model.A, model.B, model.C, model.D
     try:
-        inverse = np.linalg.inv(
-            (1j + _GROWTH) * omega[:, None, None] * (np.eye(len(A)) if model.E is None else model.E) - A
-        )
+        response, error = rounding_of_response(matrices, (1j + _GROWTH) * omega, doubt, model.E)
     except np.linalg.LinAlgError:
         return np.inf
-    left, right = C @ inverse, inverse @ B
-    size = np.abs(left @ B + D).max(axis=0, initial=0.0)
-    before, after = (np.broadcast_to(np.eye(n), (omega.size, n, n)) for n in D.shape)
-    left, right = np.concatenate([np.abs(left), before], axis=2), np.concatenate([np.abs(right), after], axis=1)
-    error = (left @ off @ right).max(axis=0, initial=0.0)
-    whole = size.max(axis=1, keepdims=True, initial=0.0)
-    size = np.where(size < _SILENT * whole, whole, size)
-    return float(np.max(error / size, initial=0.0, where=size != 0.0))
+    return relative_rounding(response, error)
 
 
 def _signals(d: Descriptor) -> tuple[Quantities, Quantities]:

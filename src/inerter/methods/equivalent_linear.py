@@ -21,7 +21,7 @@ from inerter.methods.equivalent_damper import GAUSSIAN
 from inerter.methods.linear import Conventions, LinearProblem, linear_problem
 from inerter.networks.elements import Element
 from inerter.norms.h2 import h2
-from inerter.norms.response import frequency_response
+from inerter.norms.response import rounded_response
 from inerter.norms.stability import balance
 from inerter.systems.descriptor import close, describe
 from inerter.systems.input_paths import inputs_of
@@ -141,7 +141,7 @@ def equivalent_linear_model(
 def squares_above(system: LinearSystem, omega: float) -> Array:
     """Part of the squared H2 norms (outputs,) of a stable system that is above `omega` [rad/s]."""
     beyond = omega * np.logspace(0.0, _DECADES, _ABOVE)
-    density = np.sum(np.abs(frequency_response(system, beyond)) ** 2, axis=2).T * beyond
+    density = np.sum(np.abs(rounded_response(system, beyond)) ** 2, axis=2).T * beyond
     end = density[:, -1]  # beyond the last frequency the squares fall as 1 / omega^2
     return np.asarray((scipy.integrate.trapezoid(density, np.log(beyond), axis=1) + end) / np.pi)
 

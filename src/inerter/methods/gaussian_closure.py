@@ -33,7 +33,7 @@ from inerter.methods.linear import Conventions, linear_problem
 from inerter.methods.method import Estimate
 from inerter.methods.notes import Note
 from inerter.methods.objective import Smooth
-from inerter.norms.response import frequency_response
+from inerter.norms.response import rounded_response
 from inerter.systems.descriptor import close
 from inerter.systems.outputs import force_of, of_mount, velocity_of
 from inerter.vehicle.mechanism import Mechanism, OutputWeight
@@ -218,12 +218,12 @@ class Pattern:
         poles = poles[poles > 0.0] if np.any(poles > 0.0) else np.ones(1)
         lowest, highest = 0.1 * poles.min(), 10.0 * poles.max()
         omega = lowest * 3.0 ** np.arange(0.0, math.log(highest / lowest, 3.0) + 1.0, 1.0 / _GRID)
-        before = frequency_response(close(outputs, values), omega)
+        before = rounded_response(close(outputs, values), omega)
         found = np.zeros(self.beside.shape)
         for i, name in enumerate(self.parts.dampers):
             doubled = {**values, name: 2.0 * values[name]}
-            force = values[name] * frequency_response(close(velocities, doubled), omega)[:, [i]]
-            change = frequency_response(close(outputs, doubled), omega) - before
+            force = values[name] * rounded_response(close(velocities, doubled), omega)[:, [i]]
+            change = rounded_response(close(outputs, doubled), omega) - before
             change, force = (np.sum(np.abs(one) ** 2, axis=2) for one in (change, force))
             part = np.where(force > 0.0, change / np.maximum(force, np.finfo(float).tiny), 0.0)
             density = force * omega[:, None]

@@ -78,6 +78,13 @@ def peaks_exactly(system: LinearSystem) -> tuple[list[tuple[float, float]], Stat
     return sorted(found, key=lambda peak: -peak[1]), OK
 
 
+def responses_exactly(system: LinearSystem, omega: Matrix) -> NDArray[np.complex128]:
+    """G(j omega), shape (len(omega), outputs, inputs), of inputs that arrive at once, each value rounded once."""
+    functions = _functions(system)
+    shape = omega.size, len(system.outputs), len(system.inputs)
+    return np.array([functions.at(one) for one in omega.tolist()], dtype=complex).reshape(shape)
+
+
 def _functions(system: LinearSystem) -> TransferFunctions:
     assert system.origin is not None
     return system.origin.functions(system.inputs, system.outputs)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from inerter.errors import LinearSystemError
 from inerter.kernels.modal_sums import add_modes
 from inerter.norms.delay import pade, transfer
+from inerter.norms.exact import responses_exactly
 from inerter.norms.stability import balance
 from inerter.systems.linear import LinearSystem, check_system
 from inerter.validation import real_numbers
@@ -19,6 +20,10 @@ from inerter.validation import real_numbers
 Matrix = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _MODAL = 1e-12  # of the largest value: what a sum over modes may be off by where it is compared
+_HALF_DIGIT = float(np.finfo(float).eps) / 2.0
+_CERTAIN = 1e-9  # of the largest response of an output to an input: what rounding may change
+_SAMPLED = 64  # frequencies, about, at which that is looked at
+_SILENT = 1e-12  # of the largest response of an output: what responds less is measured by that
 _MOST_ENTRIES = 4_000_000  # of all matrices that are solved at once
 
 
@@ -27,11 +32,17 @@ def frequency_response(system: LinearSystem, omega: ArrayLike, pade_order: int |
 
     Inputs of one source are one column, each arrival with its factor exp(-j omega delay), or with a Pade approximant
     for each delay between one arrival and the next, as in `h2`.
-    Infinite where omega is a pole.
+    Infinite where omega is a pole. Where rounding of the matrices of a mechanism, such as one of values many decades
+    apart, may change a response by more than 1e-9 of its largest, transfer functions are evaluated without rounding.
 
     Raises `LinearSystemError` unless omega holds finite numbers.
     """
-    return _response(system, omega, pade_order, resolvent)
+    return _response(system, omega, pade_order, _certain)
+
+
+def rounded_response(system: LinearSystem, omega: ArrayLike) -> Complex:
+    """Frequency response by the matrices as they are, whatever rounding has done to them."""
+    return _response(system, omega, None, resolvent)
 
 
 def modal_response(
@@ -99,6 +110,56 @@ def resolvent(system: LinearSystem) -> Any:
         return np.concatenate([_solve(A, B, C, part) for part in parts])
 
     return evaluate
+
+
+def _certain(system: LinearSystem) -> Any:
+    """The function of `resolvent`, without rounding where that may change it."""
+    rounded, fine = resolvent(system), system.fine
+
+    def evaluate(omega: NDArray[np.float64]) -> Complex:
+        found = rounded(omega)
+        if fine is None or not omega.size:
+            return np.asarray(found)
+        sample = slice(None, None, max(1, omega.size // _SAMPLED))
+        matrices = system.A, system.B, system.C, system.D
+        with np.errstate(all="ignore"):
+            try:
+                again, error = rounding_of_response(matrices, 1j * omega[sample], fine.errors)
+            except np.linalg.LinAlgError:  # a pole
+                return np.asarray(found)
+            eliminated = np.abs(again - found[sample] - system.D)  # in other units, and so with other roundings
+            if relative_rounding(found + system.D, np.maximum(error, eliminated)) <= _CERTAIN:
+                return np.asarray(found)
+        return responses_exactly(system, omega) - system.D
+
+    return evaluate
+
+
+def rounding_of_response(
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix], s: Complex, doubt: Matrix | float, E: Matrix | None = None
+) -> tuple[Complex, Matrix]:
+    """Responses C (s E - A)^-1 B + D, and what rounding of A, B, C and D changes in them, to first order.
+
+    Both (len(s), outputs, inputs). `doubt` are errors of the entries of [A B; C D] beside half of their last digits.
+
+    Raises `numpy.linalg.LinAlgError` at a pole.
+    """
+    A, B, C, D = matrices
+    off = _HALF_DIGIT * np.abs(np.block([[A, B], [C, D]])) + doubt
+    inverse = np.linalg.inv(s[:, None, None] * (np.eye(len(A)) if E is None else E) - A)
+    left, right = C @ inverse, inverse @ B
+    response = left @ B + D
+    before, after = (np.broadcast_to(np.eye(n), (s.size, n, n)) for n in D.shape)
+    left, right = np.concatenate([np.abs(left), before], axis=2), np.concatenate([np.abs(right), after], axis=1)
+    return response, left @ off @ right
+
+
+def relative_rounding(response: Complex, error: Matrix) -> float:
+    """Largest error over the largest response of its output and input; of silent ones, over that of the output."""
+    size = np.abs(response).max(axis=0, initial=0.0)
+    whole = size.max(axis=1, keepdims=True, initial=0.0)
+    size = np.where(size < _SILENT * whole, whole, size)
+    return float(np.max(error.max(axis=0, initial=0.0) / size, initial=0.0, where=size != 0.0))
 
 
 def _modal(system: LinearSystem, within: float) -> Any:

@@ -12,6 +12,7 @@ from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
 from math import gcd as common
+from math import inf
 from typing import TypeVar
 
 Polynomial = list[int]
@@ -140,6 +141,12 @@ def _degree_of_gcd(p: Polynomial, q: Polynomial) -> int:
     return len(a) - 1
 
 
+def _on_axis(p: Polynomial, powers: Sequence[int]) -> tuple[int, int]:
+    """Real and imaginary part of `p` at j x, by the powers of x, which may all have one factor."""
+    terms = [c * power for c, power in zip(p, powers, strict=False)]
+    return sum(terms[0::4]) - sum(terms[2::4]), sum(terms[1::4]) - sum(terms[3::4])
+
+
 def on_axis(p: Polynomial) -> Polynomial:
     """The polynomial whose roots are the squares of those roots of `p` whose negative is a root too.
 
@@ -260,6 +267,21 @@ class TransferFunctions:
 
     denominator: Polynomial
     numerators: tuple[tuple[Polynomial, ...], ...]
+
+    def at(self, omega: float) -> list[list[complex]]:
+        """G(j omega) of each output and input, rounded once; infinite at a pole."""
+        top, bottom = omega.as_integer_ratio()
+        degree = max(len(p) for row in (*self.numerators, (self.denominator,)) for p in row) - 1
+        powers = [top**i * bottom ** (degree - i) for i in range(degree + 1)]
+        real, imaginary = _on_axis(self.denominator, powers)
+        size = real * real + imaginary * imaginary
+        if not size:
+            return [[complex(inf) for _ in row] for row in self.numerators]
+        parts = ((_on_axis(p, powers) for p in row) for row in self.numerators)
+        return [
+            [complex((x * real + y * imaginary) / size, (y * real - x * imaginary) / size) for x, y in row]
+            for row in parts
+        ]
 
     def with_filters(self, filters: Sequence[Fractions]) -> TransferFunctions:
         """Transfer functions with each output times a fraction (None for 1), over one common denominator."""

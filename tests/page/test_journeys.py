@@ -332,7 +332,7 @@ def test_a_record_is_dropped_identified_and_taken(visitor: Visitor, tmp_path: Pa
     page.wait_for_selector(".fit[data-state=done] table", timeout=120_000)
     before = _study(visitor)
     page.get_by_role("button", name="Take the device into the editor").click()
-    page.wait_for_function("() => document.querySelector('#network-text').value.includes('| (')")
+    page.wait_for_function("() => document.querySelector('#network-text').value.includes('c - (')")
     visitor.settled()
     assert page.locator("#network-problem").count() == 0
     wait_until(lambda: _study(visitor) != before)

@@ -529,7 +529,7 @@ def test_a_free_network_to_begin_with_can_be_searched(client: TestClient) -> Non
 DEVICE = {"elements": {"b": "113 kg", "g": "0.1 mm", "c": "3 kN s/m"}, "layouts": {"rig": "(b | c) - g"}}
 
 
-PARALLEL = "in parallel with the strut"
+PARALLEL = "in parallel"
 
 
 @pytest.mark.parametrize(

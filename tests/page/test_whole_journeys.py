@@ -183,7 +183,7 @@ def test_a_record_is_withheld_then_fitted_right_and_its_device_is_in_a_study(
     page.wait_for_selector("text=seat.toml is open")
     visitor.pick("S1")
     person.press(fit.get_by_role("button", name="seat", exact=True))
-    page.wait_for_selector(".notice:has-text('in parallel with the seat of S1')")
+    page.wait_for_selector(".notice:has-text('in parallel'):has-text('It joins the seat of S1')")
     visitor.settled()
     assert page.locator("#network-problem").count() == 0
     assert visitor.values()["J1"] > 0.0

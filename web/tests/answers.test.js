@@ -232,7 +232,7 @@ test("only what is given is handed on: no withheld device, no values of another 
   /** @type {any} */
   const api = {
     post: async (/** @type {string} */ path, /** @type {any} */ body) => ({ elements: body.device.elements,
-      struts: [{ words: "in parallel with the strut", network: `${body.network} | ${body.device.layouts.device}` }] }),
+      struts: [{ words: "in parallel", network: `${body.network} | ${body.device.layouts.device}` }] }),
   };
   const refused = /^Unreliable: .*leaves 13 times\. There is no device to take: the fit withholds b\.$/;
   for (const each of [fit, known]) assert.match(await takeFitted(store, api, each, device), refused);

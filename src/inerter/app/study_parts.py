@@ -89,7 +89,7 @@ def struts_with_device(document: Document, network: str, device: Document) -> di
     if inerter is not None:
         struts = [(f"in place of {inerter}", replace_in_expression(network, {inerter: joined}))]
     else:
-        struts = [("in parallel with the strut", f"{network} | {joined}" if network.strip() else joined)]
+        struts = [("in parallel", f"{network} | {joined}" if network.strip() else joined)]
         if damper is not None:
             in_series = replace_in_expression(network, {damper: f"{damper} - ({joined})"})
             struts.append((f"in series with {damper}", in_series))

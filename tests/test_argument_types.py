@@ -15,6 +15,8 @@ WRONG = (["a"], np.array([1.0, 2.0]), object(), 2.5)
 
 
 CAR = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(1500.0))
+FREE = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(20e3) | it.Damper(it.free(100.0, 1e5, "c")))
+COMFORT = it.RideComfort(it.Road(1e-6, 20.0))
 OWN = {"any_network", "free", "network", "tied"}  # which say it in their own words
 DECLARATIONS = {"choice_field", "mount", "quantity", "typed_field"}  # of classes that a programmer writes
 
@@ -87,6 +89,20 @@ OTHER_EXCEPTIONS = {
     "a load cell": (
         lambda: it.linear_response(it.Spring(1.0), [1.0], "a"),
         "load cell must be a positive number of Hz",
+    ),
+    "a spring of many digits": (lambda: it.Spring(10**5000), "got an integer of 16610 bits"),
+    "a road of many digits": (lambda: it.Road(10**5000, 25.0), "got an integer of 16610 bits"),
+    "too many starts": (
+        lambda: it.optimise(CAR, COMFORT, it.Norm(), starts=10**400),
+        "from 1 to 100000, got an",
+    ),
+    "too many points": (
+        lambda: it.pareto_front(CAR, [COMFORT, it.TyreLoad(it.Road(1e-6, 20.0))], it.Norm(), points=10**400),
+        "of 2 indices must be an integer from 3 to 10000, got an integer of 1329 bits",
+    ),
+    "an array as an estimator": (
+        lambda: it.frequency_response(LAG, [1.0], estimator=np.array([1.0, 2.0])),
+        "apply to records only",
     ),
     "a huge frequency": (lambda: it.frequency_response(LAG, 10**400), "needs a list of frequencies"),
     "a huge number": (lambda: it.LinearSystem([[10**400]], [[1.0]], [[1.0]], [[0.0]]), "A must be a matrix of real"),

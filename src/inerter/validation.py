@@ -100,7 +100,7 @@ def real_numbers(value: object) -> NDArray[np.float64] | None:
 def check_positive(error: type[InerterError], what: str, value: object, unit: str = "") -> None:
     """Raise `error` unless `value` is a positive, finite number of `unit`."""
     if not is_number(value) or value <= 0.0:
-        raise error(f"{what} must be a positive number{f' of {unit}' if unit else ''}, got {value!r}.")
+        raise error(f"{what} must be a positive number{f' of {unit}' if unit else ''}, got {in_message(value)}.")
 
 
 def is_whole(value: object, least: int = 0, most: float = math.inf) -> TypeGuard[int]:
@@ -117,14 +117,14 @@ def check_whole(error: type[InerterError], what: str, value: object, least: int 
     if not is_whole(value, least, most):
         expected = {0: "a non-negative integer", 1: "a positive integer"}.get(least, f"an integer of at least {least}")
         expected = expected if most == math.inf else f"an integer from {least} to {most}"
-        raise error(f"{what} must be {expected}, got {value!r}.")
+        raise error(f"{what} must be {expected}, got {in_message(value)}.")
     return int(value)
 
 
 def check_share(error: type[InerterError], what: str, value: object) -> None:
     """Raise `error` unless `value` is a number between 0 and 1, neither of them."""
     if not is_number(value) or not 0.0 < value < 1.0:
-        raise error(f"{what} must be between 0 and 1, got {value!r}.")
+        raise error(f"{what} must be between 0 and 1, got {in_message(value)}.")
 
 
 def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P, R]]:
@@ -150,7 +150,7 @@ def checked(error: type[InerterError]) -> Callable[[Callable[P, R]], Callable[P,
             for name, value in chain(zip(names, args, strict=False), kwargs.items()):
                 if name in wanted and not any(_is_a(value, kind) for kind in wanted[name]):
                     words = dict.fromkeys(map(_in_words, wanted[name]))
-                    raise error(f"`{name}` must be {' or '.join(words)}, got {_short(value)}.")
+                    raise error(f"`{name}` must be {' or '.join(words)}, got {in_message(value)}.")
             return function(*args, **kwargs)
 
         return call
@@ -224,6 +224,16 @@ def _is_a(value: object, kind: str) -> bool:
     return any(one.__name__ == kind for one in type(value).__mro__)
 
 
-def _short(value: object) -> str:
+_LONG = 80  # characters of a value in a message, at most
+
+
+def in_message(value: object) -> str:
+    """What a message shows of a value: its text, or what it is where that is long.
+
+    >>> in_message(2.5), in_message(10**5000), in_message([0] * 100)
+    ('2.5', 'an integer of 16610 bits', 'an object of type list')
+    """
+    if isinstance(value, int) and abs(value) >= 10**_LONG:  # Python itself gives no text of more than 4300 digits
+        return f"an integer of {value.bit_length()} bits"
     text = repr(value)
-    return text if len(text) <= 80 and "\n" not in text else f"an object of type {type(value).__name__}"
+    return text if len(text) <= _LONG and "\n" not in text else f"an object of type {type(value).__name__}"

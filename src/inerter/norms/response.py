@@ -136,7 +136,7 @@ def _certain(system: LinearSystem) -> Any:
 
 
 def rounding_of_response(
-    matrices: tuple[Matrix, Matrix, Matrix, Matrix], s: Complex, doubt: Matrix | float, E: Matrix | None = None
+    matrices: tuple[Matrix, Matrix, Matrix, Matrix], s: ArrayLike, doubt: Matrix | float, E: Matrix | None = None
 ) -> tuple[Complex, Matrix]:
     """Responses C (s E - A)^-1 B + D, and what rounding of A, B, C and D changes in them, to first order.
 
@@ -146,12 +146,13 @@ def rounding_of_response(
     """
     A, B, C, D = matrices
     off = _HALF_DIGIT * np.abs(np.block([[A, B], [C, D]])) + doubt
-    inverse = np.linalg.inv(s[:, None, None] * (np.eye(len(A)) if E is None else E) - A)
+    laplace = np.asarray(s, dtype=complex)[:, None, None]
+    inverse = np.linalg.inv(laplace * (np.eye(len(A)) if E is None else E) - A)
     left, right = C @ inverse, inverse @ B
     response = left @ B + D
-    before, after = (np.broadcast_to(np.eye(n), (s.size, n, n)) for n in D.shape)
+    before, after = (np.broadcast_to(np.eye(n), (len(inverse), n, n)) for n in D.shape)
     left, right = np.concatenate([np.abs(left), before], axis=2), np.concatenate([np.abs(right), after], axis=1)
-    return response, left @ off @ right
+    return np.asarray(response), np.asarray(left @ off @ right)
 
 
 def relative_rounding(response: Complex, error: Matrix) -> float:

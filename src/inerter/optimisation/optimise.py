@@ -41,6 +41,7 @@ from inerter.work.progress import report, within
 from inerter.work.running import running_on
 
 Array = NDArray[np.float64]
+MOST_STARTS = 100_000
 AGREEMENT = 1e-6  # relative difference up to which two starts have found the same value
 COSTLY_AGREEMENT = 1e-4  # the same for values that are simulated
 _MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are evaluated, and searches from the best of them, of a costly index
@@ -177,7 +178,7 @@ def optimise(
     check_request(vehicle, index, method)
     free = check_free(vehicle)
     starts = 8 * len(free) if starts is None else starts
-    check_whole(DesignError, "`starts`", starts, 1)
+    check_whole(DesignError, "`starts`", starts, 1, MOST_STARTS)
     check_whole(DesignError, "`seed`", seed)
     limits = check_limits(subject_to)
     with one_blas_thread(), running_on(executor):

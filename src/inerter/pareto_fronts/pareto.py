@@ -41,12 +41,13 @@ from inerter.pareto_fronts.points import (
     thin_out_triangle,
     triangle_steps,
 )
-from inerter.validation import check_whole, is_whole
+from inerter.validation import check_whole
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.blas_threads import one_blas_thread
 from inerter.work.running import running_on
 
 Array = NDArray[np.float64]
+_MOST_POINTS = 10_000
 _NO_CONFLICT = 1e-6  # relative size of a trade-off up to which there is none
 _SHIFT = 3.0  # added to normalised criteria, so that they have logarithms
 _SLACK = 1e-6  # tolerance of a normalised criterion
@@ -145,8 +146,7 @@ def check_criteria(indices: object, points: object) -> tuple[IndexLike, ...]:
     if len(set(map(repr, indices))) < len(indices):
         raise PerformanceIndexError("A Pareto front requires different indices; one is repeated.")
     least = 3 if len(indices) == 2 else 6
-    if not is_whole(points, least):
-        raise DesignError(f"A front of {len(indices)} indices requires at least {least} points, got points={points!r}.")
+    check_whole(DesignError, f"The number of points of a front of {len(indices)} indices", points, least, _MOST_POINTS)
     return tuple(indices)
 
 

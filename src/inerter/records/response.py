@@ -77,7 +77,7 @@ def frequency_response(
         if omega is not None or pade_order is not None:
             raise RecordError("The frequencies of a record are those of its displacement: leave out omega.")
         return measured_response([system] if isinstance(system, Record) else list(system), estimator, segment)
-    if estimator != "H1" or segment is not None:
+    if not isinstance(estimator, str) or estimator != "H1" or segment is not None:
         raise RecordError("An estimator and a segment apply to records only; the response of a linear system is exact.")
     return linear_response(system, math.nan if omega is None else omega, pade_order)  # type: ignore[arg-type]
 

@@ -14,7 +14,7 @@ from inerter.networks.elements.algebra import Complex, Network
 from inerter.networks.elements.drawing import BOX, SymbolLine
 from inerter.networks.elements.roles import GuardRole, LinearRole, StatisticalRole, SwitchRole
 from inerter.networks.elements.values import Free, Tied, Value, check_name
-from inerter.validation import check_positive, is_number
+from inerter.validation import check_positive, in_message, is_number
 
 
 class Element(Network):
@@ -60,7 +60,9 @@ class Element(Network):
         number = value.lower if isinstance(value, Free) else value
         what = f"{in_words(self.quantity).capitalize()}" + (f" of {self.name!r}" if self.name else "")
         if not is_number(number):
-            raise NetworkError(f"{what} must be a finite number of {self.unit} or free(lower, upper), got {value!r}.")
+            raise NetworkError(
+                f"{what} must be a finite number of {self.unit} or free(lower, upper), got {in_message(value)}."
+            )
         if self.more:
             self._check_more()
         if isinstance(value, Free):

@@ -228,7 +228,7 @@ _LONG = 80  # characters of a value in a message, at most
 
 
 def in_message(value: object) -> str:
-    """What a message shows of a value: its text, or what it is where that is long.
+    """Text of a value for a message; its type or size where that is long.
 
     >>> in_message(2.5), in_message(10**5000), in_message([0] * 100)
     ('2.5', 'an integer of 16610 bits', 'an object of type list')

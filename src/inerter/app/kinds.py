@@ -145,7 +145,7 @@ KINDS = {
             "inerter.app.searches:search",
             resumes=True,
             description="Every network that a free network may be, ranked; of two or three indices the front over all "
-            "networks. The ranking fills while it goes on; a search that is stopped keeps it, and can be resumed.",
+            "networks. The ranking fills during the search; a search that is stopped keeps it, and can be resumed.",
             lacking="No layout has a free network.",
         ),
         WorkKind("compare", "Two to four designs side by side", ("designs", *_DESIGNS), f"{_STUDIED}:compare"),

@@ -168,7 +168,7 @@ class NonlinearitySupport(Enum):
 
     @property
     def words(self) -> str:
-        """What of a design is modelled, in words."""
+        """Modelled nonlinearities of a design in words."""
         return {"NEITHER": "no friction or gaps", "FRICTION": "with friction", "BOTH": "with friction and gaps"}[
             self.name
         ]

@@ -159,7 +159,10 @@ WRONG = {
     "fixing to nothing": (lambda: open_car().with_values({"c": 0.0}), "must be positive"),
     "free values in evaluate": (lambda: evaluate(open_car(), J1, Norm()), "still has free values: c, b"),
     "nothing to optimise": (lambda: optimise(car(), J1, Norm()), "no free value"),
-    "no starts": (lambda: optimise(open_car(), J1, Norm(), starts=0), "`starts` must be a positive integer, got 0"),
+    "no starts": (
+        lambda: optimise(open_car(), J1, Norm(), starts=0),
+        "`starts` must be an integer from 1 to 100000, got 0",
+    ),
     "a truth for a seed": (
         lambda: optimise(open_car(), J1, Norm(), seed=True),
         "`seed` must be a non-negative integer",

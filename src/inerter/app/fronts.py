@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import isfinite, isnan, nan
+from math import isnan
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ from inerter.app.designs import problem_digest
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.atomic_io import write_text
+from inerter.decision.results import percent_below
 from inerter.errors import Status, StudyError
 from inerter.files.study.parts import run_part
 from inerter.files.study.running import csv_of
@@ -25,7 +26,7 @@ from inerter.table import csv_rows, csv_text
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
 
 _POINTS = 15
-_EQUAL = 5e-5  # relative difference of values that are called equal
+_EQUAL = 5e-3  # difference of values that are called equal [%]
 
 
 def front(body: Body, folder: Path, tell: Tell) -> Any:
@@ -94,9 +95,9 @@ def _reference(study: Study, found: FrontAnswer, i: int, base: FrontAnswer | Non
 
 def _change(index: str, value: float, other: float) -> str:
     """How an index differs from another value of it, in words."""
-    share = value / other - 1.0 if other and isfinite(value) and isfinite(other) else nan
-    if isnan(share):
+    percent = percent_below(value, other)
+    if isnan(percent):
         return f"{index} is not comparable"
-    if abs(share) < _EQUAL:
+    if abs(percent) < _EQUAL:
         return f"equal {index}"
-    return f"{format_share(abs(share), 2)} {'lower' if share < 0.0 else 'higher'} {index}"
+    return f"{format_share(abs(percent) / 100.0, 2)} {'lower' if percent > 0.0 else 'higher'} {index}"

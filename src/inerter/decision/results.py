@@ -34,11 +34,7 @@ class Improvement:
     def size(self) -> str:
         """Size of the difference as text, without a sign; with its largest error where that is not smaller."""
         if NOTICEABLE <= abs(self.percent) <= self.bound:
-            most = (
-                f"errors of up to {format_percent_size(self.bound)}"
-                if isfinite(self.bound)
-                else "errors as large as the values"
-            )
+            most = f"errors of up to {format_percent_size(self.bound)}" if isfinite(self.bound) else _LARGE_ERRORS
             return f"{format_percent_size(abs(self.percent), self.error)} within {most}"
         return format_percent_size(abs(self.percent), self.error, self.bound)
 

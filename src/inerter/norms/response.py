@@ -22,7 +22,7 @@ Complex = NDArray[np.complex128]
 _MODAL = 1e-12  # of the largest value: what a sum over modes may be off by where it is compared
 _HALF_DIGIT = float(np.finfo(float).eps) / 2.0
 _CERTAIN = 1e-9  # of the largest response of an output to an input: what rounding may change
-_SAMPLED = 64  # frequencies, about, at which that is looked at
+_SAMPLED = 64  # frequencies, about, at which that is looked at, beside those of the largest responses
 _SILENT = 1e-12  # of the largest response of an output: what responds less is measured by that
 _MOST_ENTRIES = 4_000_000  # of all matrices that are solved at once
 
@@ -120,7 +120,8 @@ def _certain(system: LinearSystem) -> Any:
         found = rounded(omega)
         if fine is None or not omega.size:
             return np.asarray(found)
-        sample = slice(None, None, max(1, omega.size // _SAMPLED))
+        even = np.arange(0, omega.size, max(1, omega.size // _SAMPLED))
+        sample = np.union1d(even, np.abs(found).argmax(axis=0))  # and where each response is the largest
         matrices = system.A, system.B, system.C, system.D
         with np.errstate(all="ignore"):
             try:

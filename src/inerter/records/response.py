@@ -45,7 +45,8 @@ def frequency_response(
 
     **A linear system**: G(j omega), shape (len(omega), outputs, sources), omega in rad/s. Inputs of one source are one
     column, each arrival with its factor exp(-j omega delay), or with a Pade approximant for each delay between one
-    arrival and the next. Infinite where omega is a pole. Raises `LinearSystemError` unless omega holds finite numbers.
+    arrival and the next. Infinite where omega is a pole. That of a mechanism is evaluated without rounding where its
+    matrices, rounded, may be off by more than 1e-9 of it. Raises `LinearSystemError` unless omega holds finite numbers.
 
     **Records**: dynamic stiffness, force over displacement, as a `Response` at the frequencies of the displacement.
     Where the displacement is periodic, with `record.period` or an estimated one, amplitudes of the excited harmonics

@@ -29,7 +29,7 @@ def read(cause: Suspect | None, noise: float, seed: int = 0) -> it.Record:
     return replace(record, force=force + 5.0 + noise * random.standard_normal(force.size), force_noise=noise)
 
 
-@pytest.mark.parametrize("cause", GAINS)
+@pytest.mark.parametrize("cause", sampled(GAINS, [Suspect.NONLINEAR_GAIN]))
 def test_the_gain_is_named_first_and_its_change_is_estimated(cause: Suspect) -> None:
     solution = quick_fit(read(cause, 0.15), MODELS["friction"], TRUE)
     assert not solution.misfit.is_noise_limited

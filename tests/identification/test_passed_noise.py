@@ -19,6 +19,7 @@ RIG = it.VirtualRig(
 )  # fmt: skip
 
 
+@pytest.mark.campaign
 def test_one_low_frequency_gives_no_value_of_an_elastic_device_that_noise_decides() -> None:
     """Of all stiffnesses, the noise alone prefers one a twelfth as large."""
     fit = it.identify(RIG.run(it.cosine(6e-4, 2.3), 3.0), "elastic", starts=16)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from campaigns import sampled
 from numpy.typing import NDArray
 from quick_fits import quick_fit
 from rigid_fits import rigid_record
@@ -55,7 +56,7 @@ def fitted_under(record: it.Record, fault: Suspect) -> tuple[Matrix, Matrix, flo
     return problem.space.to_values(best.point), best.errors * slopes, solution.judge.misfit(problem, best.point).worst
 
 
-@pytest.mark.parametrize("fault", [Suspect.SPIKES, Suspect.HELD, Suspect.LOST_SAMPLES])
+@pytest.mark.parametrize("fault", sampled([Suspect.SPIKES, Suspect.HELD, Suspect.LOST_SAMPLES], [Suspect.SPIKES]))
 def test_an_offset_of_the_load_cell_changes_no_values_under_replaced_samples(fault: Suspect) -> None:
     centred, errors, misfit = fitted_under(with_fault(fault, 0.0), fault)
     shifted, _, other = fitted_under(with_fault(fault, 3000.0), fault)
@@ -82,6 +83,7 @@ def test_replaced_samples_are_delayed_like_all_others(fault: Suspect) -> None:
     assert np.std(late[middle] - prompt[855:895]) < 0.1 * np.std(late[middle] - prompt[middle])
 
 
+@pytest.mark.campaign
 def test_faulty_samples_of_a_channel_at_a_lower_rate_are_interpolated_at_the_rate_of_the_record() -> None:
     """A record at the readings alone has fewer samples than the forces that it is compared with."""
     record = with_fault(Suspect.SPIKES, 0.0)

@@ -160,6 +160,7 @@ def test_resonances_of_one_side_against_the_other_in_which_nothing_moves_leave_n
     assert found.value == pytest.approx(road.velocity_intensity * by_quadrature(car, 25.0, 1.5, output), rel=1e-8)
 
 
+@pytest.mark.campaign
 def test_many_designs_with_a_resonance_on_the_imaginary_axis():
     strut = it.Spring(20e3) | it.Damper(it.free(500.0, 5000.0, "c")) | it.Spring(1e4) - it.Inerter(20.0)
     car = it.FullCar(1400.0, 2400.0, 520.0, 45.0, 40.0, 2.2e5, 2.2e5, 1.2, 1.5, 1.5, 1.5, front=strut, rear=strut)

@@ -127,6 +127,12 @@ OTHER_EXCEPTIONS = {
     "coordinates": (lambda: it.Mechanism(np.array(1.0), ()), "a tuple of Coordinate"),
     "an excitation": (lambda: it.FilteredExcitation(np.array([1.0, 2.0]), it.Filter([1.0], [1.0, 1.0])), "excitation"),
     "progress": (lambda: it.simulate(CAR, duration=1.0, progress=1), "`progress` must be a function or None, got 1"),
+    "progress of a fit": (lambda: it.identify(None, "ideal", progress=[]), r"`progress` must be a function"),
+    "progress of a selection": (lambda: it.select_model(None, progress=[]), r"`progress` must be a function"),
+    "progress of many runs": (
+        lambda: it.simulate_many([CAR], outputs="tyre_load", duration=1.0, progress=[]),
+        r"`progress` must be a function or None, got \[\]",
+    ),
 }
 
 

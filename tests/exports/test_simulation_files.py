@@ -75,6 +75,10 @@ def test_what_a_file_cannot_state_is_refused() -> None:
         ExportError, match=r"A simulation file cannot state this vehicle: elements.value: .*another name"
     ):
         it.export(own, "simulation")
+    strut = it.Strut("strut", it.Spring(20e3) | it.Damper(2e3), {"body": 1.0}, it.GROUND)
+    pushed = it.Mechanism((it.Coordinate("body", 250.0),), (strut,), forces=(it.Force("road", {"body": 1.0}),))
+    with pytest.raises(ExportError, match=r"A simulation file cannot state this vehicle: vehicle\.forces\.road: "):
+        it.export(pushed, "simulation")
 
 
 def test_the_best_design_of_a_study_is_simulated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

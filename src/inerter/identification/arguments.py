@@ -15,6 +15,7 @@ from inerter.identification.models import MODELS
 from inerter.networks.elements import Network
 from inerter.records.inspection import PLAUSIBLE, extreme_sizes, questionable_units
 from inerter.records.record import Record
+from inerter.validation import in_message
 
 _FEWEST = 4  # samples of two records at the same times that show that they are the same
 _SOFTEST = 1.0  # [N/m] of the force over the displacement of any device
@@ -45,6 +46,12 @@ def checked_records(records: object) -> list[Record]:
                 f"count twice and make the intervals too narrow. Leave one of them out."
             )
     return given
+
+
+def check_progress(progress: object) -> None:
+    """Raise `IdentificationError` unless `progress` is a function or None."""
+    if progress is not None and not callable(progress):
+        raise IdentificationError(f"`progress` must be a function or None, got {in_message(progress)}.")
 
 
 def _check_columns(record: Record) -> None:

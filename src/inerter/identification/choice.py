@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError, InerterError, Status, StatusKind
-from inerter.identification.arguments import checked_records, model_of, warn_of_units
+from inerter.identification.arguments import check_progress, checked_records, model_of, warn_of_units
 from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.identify import solution_of
@@ -120,6 +120,7 @@ def select_model(
     'friction'
     """
     asked = options_of(options, changes)
+    check_progress(progress)
     given = _models_by_name(models)
     records = checked_records(records)
     warn_of_units(records)

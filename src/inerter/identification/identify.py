@@ -10,7 +10,7 @@ from typing import Unpack
 from inerter.errors import IdentificationError
 from inerter.formatting import format_quantity
 from inerter.identification import hypotheses
-from inerter.identification.arguments import checked_records, model_of, warn_of_units
+from inerter.identification.arguments import check_progress, checked_records, model_of, warn_of_units
 from inerter.identification.conclusions import fit_of
 from inerter.identification.fit import Fit
 from inerter.identification.models import with_mount
@@ -70,6 +70,7 @@ def identify(
     (True, True)
     """
     asked = options_of(options, changes)
+    check_progress(progress)
     given, device = checked_records(records), model_of(model)
     warn_of_units(given)
     with running_on(executor) as pool:

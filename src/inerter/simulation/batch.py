@@ -34,7 +34,7 @@ from inerter.simulation.threads import threads
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.outputs import find
 from inerter.systems.piecewise import PiecewiseSystem, piecewise
-from inerter.validation import is_number
+from inerter.validation import checked, is_number
 from inerter.vehicle.vehicle import Vehicle
 from inerter.work.running import map_items, running_on, threads_here
 
@@ -83,10 +83,11 @@ class Batch:
 
 
 @renamed_keywords(settled="discard")
+@checked(SimulationError)
 def simulate_many(
     vehicles: Sequence[Vehicle],
     *,
-    outputs: Sequence[str],
+    outputs: str | Sequence[str],
     duration: float,
     step: float = 2e-4,
     discard: float = 0.0,

@@ -27,7 +27,7 @@ def simulate_to_files(
     vehicles: Sequence[Vehicle],
     folder: str | Path,
     *,
-    outputs: Sequence[str],
+    outputs: str | Sequence[str],
     duration: float,
     step: float = 2e-4,
     every: int = 1,

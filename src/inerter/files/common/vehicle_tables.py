@@ -94,6 +94,15 @@ def part_name(name: Any) -> str:
     return str(name)
 
 
+def force_name(name: Any) -> str:
+    """The name of a force, which is not that of the input that moves all roads."""
+    if name == "road":
+        raise invalid_entry(
+            name, fault="as an input of a signal it is all roads", expected="another name, such as load"
+        )
+    return part_name(name)
+
+
 _RANGE = range_codec(Scalar(_bound, lambda: quantity_schema("kg", "kg m^2", least="positive")), "1 kg", "2 kg")
 
 
@@ -282,7 +291,7 @@ class MechanismTable:
         default=NOTHING,
     )
     forces: Mapping[str, Mapping[str, float]] = key(
-        NamesCodec(SOME_PORT, part_name),
+        NamesCodec(SOME_PORT, force_name),
         "External forces and moments, by the port on which they act.",
         "a section [vehicle.forces] with lines such as load = { body = 1 }",
         default=NOTHING,

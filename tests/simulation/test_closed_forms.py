@@ -619,3 +619,23 @@ def test_work_of_a_force_on_a_free_flywheel() -> None:
     assert result.energy.stored == pytest.approx(0.5 * m * speed(end) ** 2, rel=1e-10)
     assert result.energy.inputs["F"] == pytest.approx(quad(lambda t: growth * t * speed(t), begin, end)[0], rel=1e-10)
     assert result.energy.friction["f"] == pytest.approx(f * quad(speed, begin, end)[0], rel=1e-10)
+
+
+@pytest.mark.parametrize(("relaxation", "settles"), [(1.0, True), (1e5, False), (1e7, False), (1e8, False)])
+def test_a_load_that_a_leak_has_not_passed_to_its_spring_is_no_steady_state(relaxation: float, settles: bool) -> None:
+    """A spring and a damper in series relax until the mean load rests on the spring beside them, in any time."""
+    stiffness, inner = 4000.0, 4000.0
+    strut = it.Spring(stiffness) | it.Damper(40.0) | it.Spring(inner, "inner") - it.Damper(inner * relaxation)
+    mass = it.Mechanism(
+        (it.Coordinate("mass", 10.0),),
+        (it.Strut("strut", strut, {"mass": 1.0}, {}),),
+        forces=(it.Force("f", {"mass": 1.0}),),
+    )
+    t = np.linspace(0.0, 0.25, 251)
+    load = 100.0 * np.maximum(np.sin(8.0 * np.pi * t), 0.0)
+    pulses = it.Signal.sampled(t, load, "linear", label="pulses", periodic=True)
+    run = it.simulate(mass, forces={"f": pulses}, step=1e-3, initial="periodic")
+    rests = np.trapezoid(run["mass_displacement"], t) / t[-1] == pytest.approx(
+        np.trapezoid(load, t) / t[-1] / stiffness, rel=1e-5
+    )
+    assert (run.status.ok, rests) == (settles, settles)

@@ -21,6 +21,7 @@ Matrix = NDArray[np.float64]
 _PERIODS, _RECORDED, FEW_PERIODS = 300, 12, 30
 _SETTLING = 20.0  # [s]
 _REPEATS, _ENOUGH = 1e-10, 1e-6  # changes of the state over a period, relative to its size
+_CREEP = 1e-4  # of its size: what a state that nearly repeats may still lack of the one that it approaches
 
 
 def common_period(signals: Sequence[Signal | None]) -> float:
@@ -88,7 +89,7 @@ def settle(
         status = found.status
         found = event_driven.start(system, again, found.state, account=True, after=found.ending)
         found.status = status
-    if found.status.ok and settled.mismatch > _ENOUGH:
+    if found.status.ok and max(settled.mismatch / _ENOUGH, settled.creep / _CREEP) > 1.0:
         found.warning = _steady_state_warning(settled)
     return found, settled
 
@@ -122,6 +123,7 @@ def _repeat_period(
     integration.knots = again.knots
     place["settled"] = -1  # a jump at the start is one at the end of the period before
     mismatch, periods = np.inf, 1
+    ends, changes = [integration.state], [np.inf]
     while integration.status.ok and periods < most and mismatch > repeats:
         begun = integration.state
         place["segment"] = place["special"] = place["events"] = 0
@@ -130,7 +132,22 @@ def _repeat_period(
         integration.advance(last)
         periods += 1
         mismatch = integration.mismatch(begun)
-    return integration, PeriodicState(float(again.time[-1] - again.time[0]), periods, mismatch)
+        ends.append(integration.state)
+        changes.append(mismatch)
+    creep = _creep(integration.mismatch(ends[periods // 2]), changes[periods // 2 :])
+    return integration, PeriodicState(float(again.time[-1] - again.time[0]), periods, mismatch, creep)
+
+
+def _creep(moved: float, changes: Sequence[float]) -> float:
+    """Change that is left to a state that `moved` so far in as many periods as it has `changes` after the first.
+
+    Changes that decline from the first to the last as a geometric series add up to that; rounding errors add up to
+    little more than one of them, and leave none.
+    """
+    first, last = changes[0], changes[-1]
+    if moved < 0.5 * last * (len(changes) - 1) or not last > 0.0:
+        return last
+    return moved * last / (first - last) if first > last else np.inf
 
 
 def _steady_state_warning(found: PeriodicState) -> Status:
@@ -138,4 +155,6 @@ def _steady_state_warning(found: PeriodicState) -> Status:
         f"periodic steady state not reached after {found.periods} periods: relative change of state per period "
         f"{format_number(found.mismatch, 2)}"
     )
+    if found.mismatch <= _ENOUGH:
+        message += ", declining too slowly to end soon: a part of the motion relaxes over many more periods"
     return Status(StatusKind.INACCURATE, message)

@@ -73,6 +73,7 @@ class PeriodicState:
     period: float  # [s]
     periods: int
     mismatch: float  # largest change of the state over one period, relative to its largest value
+    creep: float = 0.0  # the change that is left by the decline of the changes, relative to the same
 
     @property
     def remaining_change(self) -> float:

@@ -254,6 +254,28 @@ def test_a_load_cell_that_is_far_faster_than_the_samples_is_refused():
         it.identify([record.with_notes(time=1e3 * record.time, force_bandwidth=1e3)], BALL_SCREW)
 
 
+IMPOSSIBLE = {
+    "forces of nN": ({"force": 1e-8}, BALL_SCREW, r"N r\.m\.s\., .* is at least .* units of the record"),
+    "forces of GN": ({"force": 1e9}, "friction", r"N r\.m\.s\., .* is at most .* units of the record"),
+    "times in ms as s": (
+        {"time": 1e3},
+        "friction",
+        r"are 1 s apart, at which the device is too fast.* unit of its times",
+    ),
+}
+
+
+@pytest.mark.filterwarnings("ignore::UserWarning")
+@pytest.mark.parametrize("what", IMPOSSIBLE)
+def test_records_that_no_values_within_the_bounds_can_explain_are_refused_at_once(what: str) -> None:
+    """A search for them would end far from the record, after minutes or hours."""
+    factors, model, sentence = IMPOSSIBLE[what]
+    record = fit_test(duration=1.0)
+    wrong = record.with_notes(**{name: factor * getattr(record, name) for name, factor in factors.items()})
+    with pytest.raises(it.InerterError, match=sentence):
+        it.identify(wrong.with_notes(force_range=None, force_bandwidth=None, force_noise=None), model)
+
+
 SENSORS = {
     "displacement_noise": (
         1.0,

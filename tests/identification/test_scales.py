@@ -11,7 +11,7 @@ from scipy.stats import binom
 from troubled_records import clean, model_of, record_of
 
 import inerter as it
-from inerter.errors import IdentificationError
+from inerter.errors import IdentificationError, RecordError
 from inerter.identification.experiment import experiment_of
 from inerter.identification.intervals import best_fit_of, steps_of
 from inerter.identification.noise import uniform_whitening
@@ -91,6 +91,15 @@ def test_values_follow_the_scales_that_are_given() -> None:
     assert "compliance between encoder and device" in notes
     assert "errors in the scale of the force and the displacement: 1 % more force" in " ".join(free.notes)
     assert any(f.kind == "calibrate" for f in fit.suggestions)  # no other motion makes it known better
+
+
+@pytest.mark.parametrize("name", ["force", "displacement"])
+def test_a_scale_that_no_reading_can_be_multiplied_by_is_named(name: str) -> None:
+    """Readings that are then infinite are not missing: no gaps can be filled."""
+    time = np.arange(200) / 100.0
+    record = it.Record(time, 5.0 + 0.5 * np.sin(time), 10.0 * np.sin(time), source="bench.csv")
+    with pytest.raises(RecordError, match=rf"^The {name} of 'bench.csv' has values .* multiplied by 1e\+308.* scale"):
+        it.identify(record, "ideal", **{f"{name}_scale": 1e308})
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,14 @@ ODD: dict[str, Callable[[random.Random], str]] = {
 }
 
 
+def test_a_unit_that_no_reading_can_be_multiplied_by_is_named(tmp_path: Path) -> None:
+    """Readings that are then infinite are not missing: no gaps can be filled."""
+    table = tmp_path / "bench.csv"
+    table.write_text("time [s],displacement [mm],force\n" + "".join(f"{i / 100},{i % 7},{i % 9}\n" for i in range(40)))
+    with pytest.raises(RecordError, match=r"^bench.csv: 'force' has values .* multiplied by 1e\+308.* unit"):
+        it.read_record(table, units={"force": "1e308 N"})
+
+
 def odd_table(draw: random.Random) -> str:
     """A record of 40 samples in which one cell to three are odd."""
     delimiter, end = draw.choice([",", ";", "\t"]), draw.choice(["\n", "\r\n", "\n", "\r"])

@@ -22,7 +22,7 @@ from inerter.identification.friction_models import law_hypotheses
 from inerter.identification.hypotheses import Hypothesis, Values, load_cell, sensor_hypotheses
 from inerter.identification.initial_estimate import chain_of
 from inerter.identification.intervals import ROBUST, BestFit, best_fit_of, fit_by_secants, robust_cost, steps_of
-from inerter.identification.parameter_space import Space, space_of
+from inerter.identification.parameter_space import WIDER, Space, space_of
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.identification.recording_faults import as_measured, faulty_samples, nonlinear_load_cells, recording_faults
 from inerter.identification.residual_tests import NoiseReference, scatter_of
@@ -59,7 +59,7 @@ _UNITS = (  # column of the powers of scales, channel, true unit, unit as read, 
     (1, "displacement", "mm", "m", 1e-3),
     (1, "displacement", "m", "mm", 1e3),
 )
-_AT_BOUND, _WIDER = 1e-3, 3000.0  # of the range of a coordinate: at its end; bounds that are wider, so many times
+_AT_BOUND = 1e-3  # of the range of a coordinate: at its end
 
 
 class HiddenCause(StrEnum):
@@ -252,7 +252,7 @@ def beyond_bounds(problem: FitProblem, point: Matrix) -> list[Hypothesis]:
         for name, unit, kind, there, bound in zip(space.names, space.units, space.kinds, at, bounds, strict=True)
         if kind is not None and there and bound > 0.0
     ]
-    wider = {name: (above, _WIDER if above else 1.0 / _WIDER) for name, _, _, above in ends}
+    wider = {name: (above, WIDER if above else 1.0 / WIDER) for name, _, _, above in ends}
 
     def widen(element: Element) -> Network:
         value = element.value

@@ -28,6 +28,7 @@ Matrix = NDArray[np.float64]
 MOST_SAMPLES = 400_000  # of one record: with more, a fit would take hours without better estimates
 _ROUNDED = 1e-9  # of an interval, by which times may differ from even ones
 _PACE, _MOST_PARTS = 2.0, 7  # steps over the response time of the device; parts of an interval, as a power of 2
+_TOO_MANY = 2.0  # times as many parts are needed: a fit would take hours
 _AT_REST, _TURNING = 0.02, 0.3  # of the largest velocity and acceleration: a table that is at rest, not turning back
 _END, _SHORT = 16, 0.15  # samples next to an end, at least, where filter and spline of the motion rest on its
 # continuation; but of a short record not more than a share of it, as its validation part is a fifth
@@ -124,6 +125,12 @@ class Experiment:
         """The largest velocity of the table in its first period [m/s], since at the first sample it may turn back."""
         first = self.table.slope[: math.ceil(1.0 / (self.motion.highest * self.record.interval)) + 1]
         return np.asarray(first[int(np.argmax(np.abs(first[:, 0])))])
+
+    def is_too_coarse(self, system: PiecewiseSystem) -> bool:
+        """Whether the device is so fast for the samples that each interval would take the integrator many steps."""
+        motion = _truncate(self.table_in(_knots_per_interval(self.motion, self.rigid)), 1)
+        integration = event_driven.start(system, motion, initial_state(system, self.table.value[0], "rest"))
+        return _steps_wanted(integration) > _TOO_MANY * 2.0**_MOST_PARTS
 
     def force(self, system: PiecewiseSystem, samples: int | None = None) -> Matrix | None:
         """Load cell force [N] of this device at the first `samples` samples; None if the simulation fails."""
@@ -312,6 +319,10 @@ def steps_per_interval(integration: event_driven.Integration) -> int:
 
     Otherwise each interval would be subdivided by the integrator, which takes a hundred times as long.
     """
+    return 1 << min(max(math.ceil(math.log2(max(_steps_wanted(integration), 1e-9))), 0), _MOST_PARTS)
+
+
+def _steps_wanted(integration: event_driven.Integration) -> float:
     kinds = integration.system.nonlinear_elements
     reach = np.inf
     for friction in (0, 1):  # sticks, slips; gaps touch
@@ -321,8 +332,7 @@ def steps_per_interval(integration: event_driven.Integration) -> int:
         except InerterError:
             continue
         reach = min(reach, float(integration.modes.reach[integration.count - 1]))
-    wanted = integration.table.step / (_PACE * reach)
-    return 1 << min(max(math.ceil(math.log2(max(wanted, 1e-9))), 0), _MOST_PARTS)
+    return float(integration.table.step / (_PACE * reach))
 
 
 def _table(motion: Motion, parts: int = 1, knots: int = 1) -> InputTable:

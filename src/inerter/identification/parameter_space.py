@@ -13,6 +13,7 @@ from inerter.networks.elements import Element, Free
 from inerter.vehicle.rig import Rig
 
 Matrix = NDArray[np.float64]
+WIDER = 3000.0  # times: bounds that are tried where values end at those of their search
 
 
 @dataclass(frozen=True, eq=False)

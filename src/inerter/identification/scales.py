@@ -24,7 +24,7 @@ from inerter.identification.search import improve
 from inerter.methods.averages import NORMAL_QUANTILE
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import LinearRole
-from inerter.records.record import Record
+from inerter.records.record import Record, scale_readings
 
 Matrix = NDArray[np.float64]
 _EVALUATIONS = 8
@@ -80,15 +80,18 @@ class ScaleEffects:
 def apply_scales(record: Record, options: FitOptions) -> Record:
     """The record with its readings multiplied by the given scales."""
     force, moved = options.force_scale, options.displacement_scale
-    if force is not None and force.value != 1.0:
-        changes = {
-            n: v * force.value for n in ("force", "force_range", "force_noise") if (v := getattr(record, n)) is not None
-        }
-        record = record.with_notes(f"Force multiplied by its scale, {format_number(force.value)}.", **changes)
-    if moved is not None and moved.value != 1.0:
-        names = ("displacement", "velocity", "acceleration", "displacement_noise")
-        changes = {n: v * moved.value for n in names if (v := getattr(record, n)) is not None}
-        record = record.with_notes(f"Displacement multiplied by its scale, {format_number(moved.value)}.", **changes)
+    for scale, names in (
+        (force, ("force", "force_range", "force_noise")),
+        (moved, ("displacement", "velocity", "acceleration", "displacement_noise")),
+    ):
+        if scale is not None and scale.value != 1.0:
+            changes = {
+                n: scale_readings(f"The {n} of {record.source!r}", v, scale.value)
+                for n in names
+                if (v := getattr(record, n)) is not None
+            }
+            note = f"{names[0].capitalize()} multiplied by its scale, {format_number(scale.value)}."
+            record = record.with_notes(note, **changes)
     return record
 
 

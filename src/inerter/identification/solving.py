@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import IdentificationError
+from inerter.formatting import format_quantity
 from inerter.identification.bootstrap import bootstrap
 from inerter.identification.experiment import Experiment, experiment_of, transient_samples
 from inerter.identification.fit import NormalisedResidual
@@ -20,7 +21,7 @@ from inerter.identification.intervals import BestFit, CostProfile, best_fit_of, 
 from inerter.identification.models import is_rigid
 from inerter.identification.noise import noise_whitening, uniform_whitening, whitening_of
 from inerter.identification.options import FitOptions
-from inerter.identification.parameter_space import space_of
+from inerter.identification.parameter_space import WIDER, space_of
 from inerter.identification.passed_noise import decided_by_noise
 from inerter.identification.problem import FitProblem
 from inerter.identification.residual_tests import NoiseReference, check_parts, noise_reference
@@ -29,6 +30,7 @@ from inerter.identification.search import QUICK, THOROUGH, basin_hopping, robust
 from inerter.identification.sensors import noise_residuals, unavoidable_residual
 from inerter.identification.sticking import Adhesion, profiles_at_rest, with_adhesion
 from inerter.identification.unstated_bandwidth import with_filter
+from inerter.networks.elements.roles import LinearRole
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
@@ -90,6 +92,7 @@ def solve(
     problem.whitenings = [
         uniform_whitening(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
     ]
+    _check_reach(problem)
     report("first guess", 0, 1)
     guess = {} if chain is None else guess_of(chain, list(problem.experiments))
     point, costs = _search_thoroughly(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
@@ -126,6 +129,36 @@ def _check_law(asked: FitOptions, chain: Chain | None) -> None:
             "quadratic_damping: the model must be an inerter, alone or with friction or a damper in parallel, in "
             "series with at most a shaft and a gap, such as (ks | cs) - gap - (b | f | c)."
         )
+
+
+def _check_reach(problem: FitProblem) -> None:
+    """Raise `IdentificationError` for records that no values near the bounds of their search can explain in time.
+
+    The device with all of the smallest values, or the largest, must come as near to the size of the force as wider
+    bounds could bring it, and a device in the middle must not be too fast for the samples: else every search ends far
+    from the record, or every simulation takes seconds. Gaps are closed.
+    """
+    lower, upper = problem.space.bounds
+    gaps = np.array([kind is not None and kind.linear is LinearRole.CLOSED for kind in problem.space.kinds])
+    first = replace(problem, horizon=QUICK[0][0])
+    for e in problem.experiments:
+        source, middle = e.record.source, problem.system(0.5 * (lower + upper), e.record)
+        if middle is not None and e.is_too_coarse(middle):
+            raise IdentificationError(
+                f"The samples of {source!r} are {format_quantity(e.record.interval, 's')} apart, at which the device "
+                "is too fast to be computed. Check the unit of its times, or resample the record."
+            )
+        for point, word in ((lower, "least"), (np.where(gaps, lower, upper), "most")):
+            simulated = first.simulate(e, point)
+            if simulated is None:
+                continue
+            size, measured = float(np.std(simulated.force)), float(np.std(e.record.force[: simulated.force.size]))
+            if (size > WIDER * measured) if word == "least" else (measured > WIDER * size):
+                raise IdentificationError(
+                    f"The force of {source!r} is {format_quantity(measured, 'N')} r.m.s., but that of the model with "
+                    f"this motion, within the bounds of its values, is at {word} {format_quantity(size, 'N')} r.m.s. "
+                    "Check the units of the record, or change the bounds."
+                )
 
 
 def _simulation_error(problem: FitProblem) -> IdentificationError:

@@ -160,7 +160,7 @@ def _time_scale_text(f: Finding) -> Text:
         f"The motion is implausibly slow: {motion}, with which even 1 t adds only "
         f"{format_quantity(n['inertial'], 'N', 3)} to the force. Check the unit of the times, such as ",
         *(Remedy(Action.UNIT, ("time", "ms")), "."),
-        " If it is right, the record shows friction and stiffness only, and a fit may take hours.",
+        " If it is right, the record shows friction and stiffness only.",
     )
 
 

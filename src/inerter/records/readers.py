@@ -19,7 +19,7 @@ from inerter.records.channels import Channel, Contents, Progress, Samples, ignor
 from inerter.records.dropouts import fill_dropouts
 from inerter.records.gaps import fill_missing, have_same_times, resample_onto_force
 from inerter.records.prepare import with_missing_times
-from inerter.records.record import Record
+from inerter.records.record import Record, scale_readings
 from inerter.records.remedy import Action, Remedy
 from inerter.validation import check_positive, checked
 
@@ -192,10 +192,8 @@ def _to_si_units(source: str, channel: Channel, samples: Samples, factor: float)
     values = values if own else values.astype(float)
     inverse = 1.0 / factor
     if abs(inverse) > 1.0 and abs(inverse - round(inverse)) < 1e-9 * abs(inverse):
-        values /= round(inverse)  # exact to the last digit, where multiplying is not
-    else:
-        values *= factor
-    return Samples(values, samples.time)
+        return Samples(np.divide(values, round(inverse), out=values), samples.time)  # exact, as multiplying is not
+    return Samples(scale_readings(f"{source}: {channel.name!r}", values, factor, out=values), samples.time)
 
 
 def _with_times(

@@ -196,6 +196,21 @@ class Record:
         )
 
 
+def scale_readings(what: str, values: Matrix, factor: float, out: Matrix | None = None) -> Matrix:
+    """The values in units that are larger by `factor`.
+
+    Raises `RecordError` where they become too large for numbers, which would look like missing samples.
+    """
+    try:
+        with np.errstate(over="raise"):
+            return np.multiply(values, factor, out=out)
+    except FloatingPointError:
+        raise RecordError(
+            f"{what} has values that are too large when multiplied by {format_number(factor)}. Check its unit and "
+            f"scale."
+        ) from None
+
+
 def _vector(what: str, values: object) -> Matrix:
     """The values as a vector, with nan where a masked array has none.
 

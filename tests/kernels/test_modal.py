@@ -33,7 +33,7 @@ def random_system(rng, n, delays, filters, order=None):
         np.array(delays), np.arange(o), np.cumsum([0, *(one.poles.size for one in noises)]),
         np.concatenate([one.poles for one in noises]), np.concatenate([one.residues for one in noises]),
         np.concatenate([one.errors for one in noises]), np.array([one.direct for one in noises]),
-        delay_poles(order),
+        delay_poles(order), 1e-9,
     )  # fmt: skip
     return descriptor, (np.ascontiguousarray(row), np.zeros((0, 0))), noise
 

@@ -99,6 +99,29 @@ def test_a_filter_behind_isotropic_tracks_is_not_lost():
     assert found == pytest.approx(it.evaluate(FULL.with_values(values), index, it.Norm()).value, rel=1e-6)
 
 
+def series_strut(end):
+    inner = Spring(free(1e3, 1e6, f"s{end}")) - Inerter(free(1.0, 2e3, f"b{end}")) - Damper(free(10.0, 1e5, f"d{end}"))
+    return Spring(8e4) | Damper(free(100.0, 2e4, f"c{end}")) | inner
+
+
+def test_of_isotropic_tracks_modes_know_designs_at_bounds(monkeypatch):
+    car = dataclasses.replace(FULL, front=series_strut("f"), rear=series_strut("r"))
+    index = it.RideComfort(it.Road(5e-7, 25.0, it.Coherence.isotropic(1.5)), weighting="Wk")
+    objective, points = it.Norm().objective(car, index), draw(car, 3, 2)
+    names = list(car.free_values())
+    corner = {"cf": 6587.0, "sf": 1e3, "bf": 2e3, "df": 10.0, "cr": 2659.0, "sr": 1e6, "br": 19.84, "dr": 7.732e4}
+    points[:2] = [[corner[name] for name in names], [6539.0, 3.043e5, 1.0, 678.8, 1717.0, 1e6, 60.87, 1464.0]]
+    expected = [objective._exact_index(point) for point in points]
+    objective.supported_outputs  # noqa: B018 - found with the other code
+    monkeypatch.setattr("inerter.methods.compiled_norm.h2_kernels", None)
+    assert objective.values(points) == pytest.approx(expected, rel=2e-8)
+    direction = np.cos(np.arange(8.0))
+    for point in points:
+        _, gradient = objective.value_and_gradient(point)
+        ends = [objective.values(point * np.exp(step * direction[None]))[0] for step in (-1e-4, 1e-4)]
+        assert (gradient * point) @ direction == pytest.approx((ends[1] - ends[0]) / 2e-4, rel=1e-4, abs=1e-5 * ends[0])
+
+
 def test_where_modes_cannot_serve_covariances_do():
     struts = tuple(it.Strut(f"s{i}", strut(i), {f"body{i}": 1.0}, {f"wheel{i}": 1.0}) for i in range(3))
     masses = [it.Coordinate(f"{name}{i}", mass) for i in range(3) for name, mass in (("body", 300.0), ("wheel", 40.0))]

@@ -26,7 +26,6 @@ from inerter.kernels.double_double import add_multiple, add_product
 from inerter.kernels.eigenproblem import real_eigenvectors
 
 Array = Any
-_ACCURATE = 1e-9  # relative error of a mean square up to which it counts as known
 _SMALL = 1e-7  # largest relative size of the terms of its correction
 _SEPARATE = 1e-3  # largest remainder of the modes relative to their damping: higher orders are far below the first one
 _REGULAR = 1e-3  # largest entry of V^-1 V - I
@@ -42,7 +41,7 @@ TO_REAL_TRANSPOSED = (1.0 + 0j, 1j, 1.0 + 0j, -1j)
 TO_MODES_TRANSPOSED = (0.5 + 0j, 0.5 + 0j, -0.5j, 0.5j)
 
 _FIELDS = "float64[::1], int64[::1], int64[::1], complex128[::1], complex128[::1], float64[::1], float64[::1]"
-NOISE = f"Tuple(({_FIELDS}, complex128[::1]))"
+NOISE = f"Tuple(({_FIELDS}, complex128[::1], float64))"
 
 
 class FilteredNoise(NamedTuple):
@@ -56,6 +55,7 @@ class FilteredNoise(NamedTuple):
     errors: Array  # relative rounding errors of r_f / (m_f + s)
     direct: Array  # (groups,) d
     delay_poles: Array  # q of D(x), the product of (q + x) / (q - x); none where delays are exact
+    accurate: float  # relative error of a mean square by rounding up to which it counts as known
 
 
 class VehicleModes(NamedTuple):
@@ -811,7 +811,7 @@ def norms_by_modes(points: Array, descriptor: Array, extended: Array, given: Arr
             for k in range(o):
                 if groups[k] == group:
                     square, more, unsure = mean_square(noise, group, room, k, D, remainder_D)
-                    is_known = is_known and square > 0.0 and more <= _SMALL and unsure <= _ACCURATE
+                    is_known = is_known and square > 0.0 and more <= _SMALL and unsure <= noise.accurate
                     result[row, k] = np.sqrt(square)
                     terms, rounding = terms + more, rounding + unsure
                     if weights.size > 0:

@@ -217,8 +217,8 @@ class CompiledNorm:
                     self.problem.part(self.supported_outputs)
                 )._compiled_norms(points)
             return result
-        norms, _, errors, _ = self._with_gradients(points, np.empty(0))
-        norms[~self._sure(points, norms, errors)] = np.nan
+        norms, _, errors, by_modes = self._with_gradients(points, np.empty(0))
+        norms[~self._sure(points, norms, errors, by_modes)] = np.nan
         return norms
 
     def _with_gradients(self, points: Array, weights: Array) -> tuple[Array, Array, Array, Bools]:
@@ -230,22 +230,36 @@ class CompiledNorm:
         if self._has_one_exact_source:
             return self._kernel_norms(points, weights)
         squares, errors = np.zeros((points.shape[0], self.supported_outputs.size)), np.zeros(points.shape[0])
+        gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         modal, found = np.ones(points.shape[0], dtype=bool), []
-        for seen, one in self.per_source_definitions:
-            own = np.ascontiguousarray(points[:, self._columns(one)])
-            norms, behind, of_one, by_modes = one._of_one_source(own)
+        for seen, columns, one in self._excited:
+            alone = weights[seen] if weights.size and self._is_excited_once else np.empty(0)
+            norms, slopes, behind, of_one, by_modes = one._of_one_source(
+                np.ascontiguousarray(points[:, columns]), alone
+            )
             squares[:, seen] += norms**2
-            found.append((norms, behind))
+            found.append((norms, slopes, behind))
             errors, modal = np.maximum(errors, of_one), modal & by_modes
         total = np.sqrt(squares)
-        gradients = np.zeros((points.shape[0] if weights.size else 0, points.shape[1]))
         for row in range(gradients.shape[0]):
-            for (seen, one), (norms, behind) in zip(self.per_source_definitions, found, strict=True):
+            for (seen, columns, one), (norms, slopes, behind) in zip(self._excited, found, strict=True):
+                if slopes.size and np.all(np.isfinite(slopes[row])):
+                    gradients[row, columns] += slopes[row]
+                    continue
                 shares = weights[seen] * norms[row] / np.maximum(total[row, seen], 1e-300)
-                columns = self._columns(one)
                 own = np.ascontiguousarray(points[row, columns])
                 gradients[row, columns] += one._slopes_of_one_source(own, shares, norms[row], behind[row])
         return total, gradients, errors, modal
+
+    @cached_property
+    def _excited(self) -> tuple[tuple[NDArray[np.bool_], list[int], CompiledNorm], ...]:
+        """`per_source_definitions` with the positions of their design variables."""
+        return tuple((seen, self._columns(one), one) for seen, one in self.per_source_definitions)
+
+    @cached_property
+    def _is_excited_once(self) -> bool:
+        """Whether no output is excited by several sources, so that weights of its norm are those of its one source."""
+        return bool(np.all(np.sum([seen for seen, *_ in self._excited], axis=0) <= 1))
 
     @cached_property
     def _has_one_exact_source(self) -> bool:
@@ -289,15 +303,17 @@ class CompiledNorm:
         """Relative excess of the source's density over that of its filter, as a function; None if there is none."""
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
-    def _of_one_source(self, points: Array) -> tuple[Array, Array, Array, Bools]:
-        """Norms over a source that excites all outputs, norms for its filter alone, and error estimates (designs,).
+    def _of_one_source(self, points: Array, weights: Array) -> tuple[Array, Array, Array, Array, Bools]:
+        """Norms over a source that excites all outputs, gradients of their sum with `weights`, norms for its filter
+        alone, and error estimates (designs,).
 
-        The first two are one where the filter is exact or modes do without it. The last tells where these do.
+        Both norms are one where the filter is exact or modes do without it; elsewhere gradients are nan. The last tells
+        where modes do.
         """
         if self._excess is None:
-            norms, _, errors, by_modes = self._kernel_norms(points, np.empty(0))
-            return norms, norms, errors, by_modes
-        norms, _, errors = self._by_modes(points, np.empty(0))
+            norms, gradients, errors, by_modes = self._kernel_norms(points, weights)
+            return norms, gradients, norms, errors, by_modes
+        norms, gradients, errors = self._by_modes(points, weights)
         by_modes = np.isfinite(errors)
         behind, rest = norms.copy(), np.flatnonzero(~by_modes)
         if rest.size:
@@ -306,7 +322,7 @@ class CompiledNorm:
             squares = found**2 + excess_kernels.corrections(points[rest], *own, np.empty(0))[0]
             norms[rest], behind[rest] = np.sqrt(np.maximum(squares, 0.0)), found
             errors[rest] = np.where(np.any(np.isnan(norms[rest]), axis=1), np.inf, unsure)
-        return norms, behind, errors, by_modes
+        return norms, gradients, behind, errors, by_modes
 
     def _slopes_of_one_source(self, point: Array, weights: Array, norms: Array, found: Array) -> Array:
         """Gradient at one point of the sum with `weights` of the norms of `_of_one_source`."""
@@ -319,15 +335,15 @@ class CompiledNorm:
         slopes = h2_kernels.norms(point[None], *self.arguments, shares * found)[1][0]
         return np.asarray(slopes + excess_kernels.corrections(point[None], *own, 0.5 * shares)[1][0])
 
-    def _sure(self, points: Array, norms: Array, errors: Array) -> NDArray[np.bool_]:
+    def _sure(self, points: Array, norms: Array, errors: Array, by_modes: Bools) -> Bools:
         """True for designs whose norms are accurate (designs,).
 
         Uncertain norms behind filters beyond first order count as accurate if steps of rounding size leave them alone.
         Under light damping the states of such a filter cancel in its output, and the error bound of compiled code
-        may then be exceeded a little.
+        may then be exceeded a little. Modes have no such states.
         """
         sure = np.isfinite(errors)
-        uncertain = sure & (errors > _UNCERTAIN)
+        uncertain = sure & (errors > _UNCERTAIN) & ~by_modes
         if uncertain.any() and self.problem.highest_filter >= 2:
             asked = np.flatnonzero(uncertain)
             shifted_value = np.concatenate([points[asked] * (1.0 + by) for by in _MOVED])
@@ -348,7 +364,7 @@ class CompiledNorm:
         norms, gradient, errors, is_modal = self._with_slopes(point)
         found = value = float(self._combine(norms)[0])
         allowed = _SAME
-        if not self._sure(point[None], norms, errors)[0]:
+        if not self._sure(point[None], norms, errors, is_modal)[0]:
             value, allowed = self._exact_index(point), _USABLE
         agrees = abs(found - value) <= _SAME * value
         if agrees and (is_modal[0] or self._gradient_agrees(point, gradient, allowed * value)):

@@ -9,7 +9,8 @@ import numpy as np
 
 from inerter.methods.linear import LinearProblem
 from inerter.norms.delay import pade
-from inerter.signals.coherence import Coherence, Excess, isotropic_exponentials
+from inerter.norms.h2 import ACCURATE
+from inerter.signals.coherence import ISOTROPIC_DENSITY, Coherence, Excess, isotropic_exponentials
 from inerter.systems.autocorrelation import Autocorrelation, autocorrelation, pole_errors
 from inerter.systems.descriptor import Descriptor, describe
 from inerter.systems.filters import Filter
@@ -62,6 +63,7 @@ def modal_arguments(problem: LinearProblem) -> tuple[Any, Any, Any] | None:
         np.concatenate([one.errors for one in known]),
         np.array([one.direct for one in known]),
         delay_poles(problem.pade_order),
+        ACCURATE if excess is None else ISOTROPIC_DENSITY,
     )
     return *stacks_of(descriptor), noise
 

@@ -23,6 +23,7 @@ _ISOTROPIC = (
     (2.321311584441453e-06, 0.034459574806466296, 1.4486734273829336),
     (2.321311584441453e-06, 0.03446783522489262, 1.5149025250469859, 1.0),
 )
+ISOTROPIC_DENSITY = 2e-8  # relative error of the density of `isotropic_exponentials`
 _TERMS = 14  # of the series of K1 below 1, whose last is 1e-24 there
 _STEP, _LOWEST, _HIGHEST = 0.02, -32.0, 16.0  # of ln x in a table, whose cubics deviate by less than 1e-9
 
@@ -168,7 +169,8 @@ def isotropic_exponentials(sign: float) -> tuple[Any, Any, float]:
     It is direct delta(t) + sum r exp(m |t|): for `sign` 1 of the velocity of the mean of the tracks, with the density
     (1 + gamma) / 2; for -1 of the displacement of half of their difference, (1 - gamma) / (2 x^2) at x = 2 pi n track.
     Least squares of the relative error at fixed rates: those of decaying oscillations bring the decay of gamma beyond
-    x = 5, real ones the logarithm of long waves. The density is off by less than 2e-8 of itself at x from 1e-6 on.
+    x = 5, real ones the logarithm of long waves. The density is off by less than `ISOTROPIC_DENSITY` of itself at x
+    from 1e-6 on.
     """
     low = np.exp(np.arange(math.log(1e-4 if sign > 0.0 else 1e-8), math.log(0.02), 0.5))
     middle = np.exp(np.arange(math.log(low[-1]) + 0.25, math.log(5.0), 0.25))

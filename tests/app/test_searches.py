@@ -6,6 +6,7 @@ import os
 import re
 import threading
 import time
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -71,6 +72,9 @@ def test_the_ranking_is_that_of_the_library_and_each_network_is_a_layout(client:
     assert [row["value"] for row in searched["ranking"]] == [one.value for one in library.ranking[:10]]
     shown = [(row["n_elements"], row["value"]) for row in searched["frontier"]]
     assert shown == [(one.n_elements, one.value) for one in library.frontier]
+    values = [value for _, value in shown]
+    gains = [100.0 * (1.0 - value / before) for before, value in pairwise(values)]
+    assert [row["gain_on_previous_percent"] for row in searched["frontier"]] == [None, *map(pytest.approx, gains)]
     assert (found["networks"], found["complete"], found["front"]) == (library.n_networks, True, None)
     for row in searched["ranking"]:
         study = _taken(SEARCHED, row)

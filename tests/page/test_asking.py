@@ -154,6 +154,22 @@ def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) ->
     assert tomllib.loads(path.read_text())["study"]["optimise"] == "norm"
 
 
+def test_the_best_is_found_of_all_layouts_and_of_one_only_on_request(visitor: Visitor) -> None:
+    """A layout at its best is not compared with others at their former values, unless a person asks for that."""
+    page = visitor.page
+    page.fill("[id='entry elements.k']", "60 kN/m")
+    page.keyboard.press("Enter")
+    stale = page.locator(".verdict .stale")
+    for button, told in (("Only S3", "The best J1 of S3."), ("Find best", "The best J1 of S1, S2, S3, S2e, S3e.")):
+        stale.wait_for()
+        page.get_by_role("button", name=button).click()
+        page.wait_for_function(
+            "told => document.querySelector('.optimise [role=status]').textContent === told", arg=told
+        )
+    stale.wait_for(state="detached")
+    assert "%" in page.inner_text("#verdict > b")
+
+
 def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.page
     text = _two_struts(f'{ONE_INDEX}\noptimise = "norm"', c='{ from = "100 N s/m", to = "100 kN s/m" }')

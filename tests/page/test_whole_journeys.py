@@ -109,7 +109,7 @@ def test_an_own_car_from_the_first_screen_to_the_report(
     page.wait_for_selector(".limits li", state="attached")
     page.keyboard.press("Escape")
 
-    person.press(page.get_by_role("button", name="All layouts", exact=True))
+    person.press(page.get_by_role("button", name="Find best"))
     page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
     page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 1")
     best = visitor.values()

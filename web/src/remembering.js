@@ -199,7 +199,7 @@ async function openRecord(store, api, file) {
     const { study } = examples.find((/** @type {any} */ { name }) => name === first.name);
     if (await beginWith(store, api, study)) // the device joins the baseline
       store.change({ type: "selected", layout: baselineOf(store.get().history.present).layout });
-    told += ` The example ${study.title} is open for its device: see Rig.`;
+    told += ` It is in the tab Rig, and the example “${study.title}” is open, to try its device in.`;
   }
   showNewest(".tabs");
   store.say(told, file.name);

@@ -32,7 +32,7 @@ export async function optimise(store, api, asked) {
     }
     const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);
     if (store.get().history.present.study !== study)
-      return "The study was changed meanwhile, and the values are not taken. Press Optimise again.";
+      return "The study was changed meanwhile, and the values are not taken. Press Find best again.";
     return withSpeeds(takeOptima(store, designs, null, study), speeds);
   } catch (error) {
     return /** @type {Error} */ (error).message;
@@ -50,7 +50,7 @@ export function takeOptima(store, designs, gesture = null, of = null) {
   const taken =
     of === study ? chosen : chosen.filter(({ best, values }) => isHere(store.get(), best.layout, Object.keys(values)));
   const doubts = doubted(designs.flatMap(membersOf));
-  if (chosen.length === 0) return doubts || "No value is free: nothing to choose. Make one free by its button.";
+  if (chosen.length === 0) return doubts || "No value may vary: tick the box of one under “may vary”.";
   if (taken.length === 0) {
     const [{ best, values }] = chosen;
     const other = `a layout ${best.layout} that has ${Object.keys(values).join(", ")} free`;

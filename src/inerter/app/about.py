@@ -88,8 +88,10 @@ def about() -> dict[str, Any]:
             if kind.is_file
         ],
         "export_note": f"{capital(WITHOUT_CONDITIONS)}.",
-        "models": [*MODELS, CHOOSE],
-        "model_words": {CHOOSE: CHOOSE_WORDS, **{name: model_words(name) for name in MODELS}},
+        "models": [
+            {"key": CHOOSE, "title": "all models", "words": CHOOSE_WORDS},
+            *({"key": name, "title": name, "words": model_words(name)} for name in MODELS),
+        ],
         "record_suffixes": list(FORMATS),
         "examples": list(examples()),
     }

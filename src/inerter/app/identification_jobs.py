@@ -18,7 +18,7 @@ from inerter.files.identification.running import read, run_identification
 from inerter.formatting import typeset
 from inerter.report.identification import RESULT_NAMES, write_fit, write_identification
 from inerter.report.identification_data import identification_data
-from inerter.report.identification_text import unreliability_reason
+from inerter.report.identification_text import misfit_sentence, unreliability_reason, whiteness_sentence
 from inerter.report.identified_values import device_tables, value_and_interval
 
 Body = Mapping[str, Any]
@@ -46,6 +46,7 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
             "reason": unreliability_reason(found),
             "causes": causes(found),
             "findings": findings(found),
+            "residual": [misfit_sentence(found), *map(whiteness_sentence, found.fit.comparisons)],
         }
     )
     return {

@@ -124,7 +124,7 @@ KINDS = {
             "Sweep",
             ("sweep", "layouts", "indices"),
             f"{_STUDIED}:sweep",
-            description="The best designs over one number of the study.",
+            description="The best designs for each value of one number of the study.",
             lacking="There is no fixed value to sweep.",
             subject=_sweep,
         ),
@@ -133,7 +133,7 @@ KINDS = {
             "Trade-off front",
             ("layouts", "indices", "method", "points"),
             "inerter.app.fronts:front",
-            description="The designs of which none is better by two or three indices: each point can be taken into "
+            description="Designs that no other one beats in all of two or three indices: each point can be taken into "
             "the editor.",
             lacking="No two indices are known.",
             subject=_front,

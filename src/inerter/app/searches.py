@@ -142,7 +142,11 @@ class _Ranking:
         searches = []
         for one in found.searches:
             ranking = [self._of_network(one, network) for network in one.result.ranking[:RANKED]]
-            frontier = [self._of_network(one, network) for network in one.result.frontier]
+            values = [nan, *(network.value for network in one.result.frontier)]
+            frontier = [
+                self._of_network(one, network) | {"gain_on_previous_percent": improvement(network.value, before)}
+                for network, before in zip(one.result.frontier, values, strict=False)
+            ]
             real = [self._of_real(one, each) for each in one.real if each.network]
             searches.append(self._of_index(one.index, ranking, frontier, real, one.baseline))
         sentences = [typeset(sentence) for sentence in search_sentences(found)]

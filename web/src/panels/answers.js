@@ -96,7 +96,7 @@ function Ranking({ store, answer: { is, value, before } }) {
     <table><thead><tr><th scope="col">layout</th>
       <th scope="col" title=${goal && withUnit(goal.title, units.goal.unit)}>${
         goal ? withUnit(goal.index, units.goal.unit) : goalOf(state)}</th>
-      <th scope="col" title=${`against ${baseline}`}>against ${baseline}</th>
+      <th scope="col" title=${`gain on ${baseline}: + is better`}>gain on ${baseline}</th>
       ${others.map((/** @type {any} */ { index, title }, /** @type {number} */ i) => html`<th scope="col" key=${index}
         title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
     <tbody key=${order}>${rows.map((row) => html`<${Row} key=${row.layout}
@@ -230,7 +230,7 @@ function Conditions({ state, goal, row, baseline }) {
   const values = both.flatMap(({ in_conditions: each }) => each.map((/** @type {any} */ { value }) => value));
   const { unit, factor } = unitFor(state.about, values, goal.unit);
   const heads = [`${withUnit(goal.index, unit)} in condition`, ...both.map(({ name }) => name),
-    ...(both.length > 1 ? [`against ${baseline.name}`] : [])].map((head) => [head, head]);
+    ...(both.length > 1 ? [`gain on ${baseline.name}`] : [])].map((head) => [head, head]);
   return html`<${Table} label="Conditions" class="conditions" heads=${heads}>
     ${row.in_conditions.map((/** @type {any} */ own, /** @type {number} */ i) => html`<tr key=${own.name}>
       <th scope="row">${own.name}${own.share !== null && html` <small>(${shown(100 * own.share, 3)} %)</small>`}</th>

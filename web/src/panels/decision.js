@@ -97,7 +97,8 @@ function Verdict({ state, blank }) {
   /** @type {{sentence: string, severity: string, caveats: Caveat[]} | undefined} */
   const verdict = value?.verdict;
   const searched = searchedLayouts(state);
-  const none = searched.length > 0 ? `No strut to rank: the network of ${searched.join(", ")} is to be searched for.`
+  const none = searched.length > 0 ? `Nothing to rank yet: search for the network of ${
+    searched.length > 1 ? "the layouts" : "layout"} ${searched.join(", ")}.`
     : `Not computed: the study has no ${state.history.present.layout === "" ? "layout" : "index"}.`;
   const unsearched = searched.length > 0 && value?.rows.length < 2; // nothing is wrong with what stands alone
   const failed = is === "none" ? (problem?.sentence ?? sentence ?? none) : unsearched ? none : "";
@@ -126,7 +127,7 @@ function ToOptimise({ state }) {
   const title = stale.length > 0 ? `Values of ${stale.join(", ")} were optimised before the study or its goal changed.`
     : `Nobody has chosen values of ${unchosen.join(", ")}.`;
   return html`<button type="button" class="stale" title=${title} onClick=${() =>
-    /** @type {HTMLElement | null} */ (document.querySelector(".optimise [value=all]"))?.click()}>${
+    /** @type {HTMLElement | null} */ (document.querySelector("#find-best"))?.click()}>${
     stale.length > 0 ? "Values not re-optimised" : "Values not chosen"}: <u>optimise all layouts</u></button>`;
 }
 

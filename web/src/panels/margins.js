@@ -80,7 +80,7 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
     ${told(caveats.filter((/** @type {any} */ one) => !doubts.includes(one)))}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
-    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["Speed [km/h]", "against the baseline"]}>
+    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["Speed [km/h]", "gain on the baseline"]}>
       ${speeds.map((/** @type {any} */ { factor, speed, status, ...one }) => html`<tr key=${factor}>
         <th scope="row">${shown(3.6 * speed, 4)} (${signed(100 * (factor - 1), 0)})</th>
         <td class="number"><${Against} row=${{ ...one, status, improvement_status: status }} /></td></tr>`)}<//>`}

@@ -44,7 +44,7 @@ export function MotionPanel({ store }) {
   const reduced = useReduced(store);
   const why = whyStill(mechanism, history);
   return html`<section class="panel vehicle" aria-label="The vehicle in motion" data-being=${history.is}>
-    <div class="over">
+    ${shown && html`<div class="over">
       <div class="segmented" role="group" aria-label="Speed">
         ${SPEEDS.map(([share, words]) => html`<${Chip} key=${words} on=${speed === share}
           title=${`${words} of the true speed`} set=${() => store.look({ speed: share })}>
@@ -52,7 +52,7 @@ export function MotionPanel({ store }) {
       </div>
       <button type="button" aria-pressed=${!playing} onClick=${() => store.look({ playing: !playing })}>
         ${playing ? "Hold" : "Run"} <kbd>space</kbd></button>
-    </div>
+    </div>`}
     <div class=${`picture ${useLate(history.before || isKept) ? "stale" : ""}`} aria-busy=${history.is === "coming"}>
       ${shown && html`<${Picture} store=${store} shown=${shown} reduced=${reduced} />`}
     </div>
@@ -272,5 +272,5 @@ function shapesOf({ motion, other, shaded, speed, names, scene: { column } }, ma
   const trails = column ? [...(other ? trail(made, pastOf(made, other, at, speed), "other trail") : []),
     ...trail(made, pastOf(made, motion, at, speed), "own")] : [];
   return [...posed(made, moment, { other: beside }), ...trails,
-    ...captions(made, { moment, motion, passing: passing(made, speed) }, names)];
+    ...captions(made, { moment, motion }, names)];
 }

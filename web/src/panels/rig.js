@@ -1,6 +1,6 @@
 // A rig corner: measured records, what was found in them, what the device is made of, and the device into the editor.
 
-import { Doubts } from "../parts/doubts.js";
+import { Doubts, isOk } from "../parts/doubts.js";
 import { open } from "../remembering.js";
 import { Plot } from "../plot.js";
 import { Select, Table, useChoice, formHandler, showNewest } from "../parts/controls.js";
@@ -21,9 +21,9 @@ export function RigPanel({ store, api }) {
   const [told, setTold] = useState("");
   const fits = Object.values(state.work).filter(({ kind }) => kind === "identify").toReversed();
   const suffixes = recordSuffixes(state);
-  const words = state.about?.model_words ?? {};
-  const models = Object.keys(words);
-  const [model = "", setModel] = useChoice(models);
+  const models = modelsOf(state);
+  const [picked, setModel] = useChoice(models.map(({ key }) => key));
+  const model = models.find(({ key }) => key === picked);
   return html`<div>
     <p class="quiet">Drop a measured record anywhere on the page (${suffixes.join(", ")}), or</p>
     <label class="file">choose one <input type="file" accept=${suffixes.join()} multiple
@@ -31,10 +31,11 @@ export function RigPanel({ store, api }) {
         /** @type {HTMLInputElement} */ (event.currentTarget).files ?? [])} /></label>
     ${state.records.length > 0 &&
     html`<form class="row" onSubmit=${formHandler(async () => setTold(await fit(store, api, state.records,
-      { model })))}>
-      <${Select} label="Model" name="model" choices=${models} value=${model} set=${setModel} />
+      { model: picked ?? "" }, model?.title)))}>
+      <${Select} label="Model" name="model" choices=${models.map(({ key, title }) => [key, title])} value=${picked}
+        set=${setModel} />
       <button class=${fits.length === 0 ? "main" : "edged"}>Identify</button>
-      <span class="quiet">${words[model]}</span>
+      <span class="quiet">${model?.words}</span>
     </form>`}
     ${told && html`<p class="problem" role="alert">${told}</p>`}
     ${fits.map((job, i) => html`<${Fit} key=${job.id} store=${store} api=${api} job=${job} main=${i === 0} />`)}
@@ -43,6 +44,10 @@ export function RigPanel({ store, api }) {
         record=${record} />`)}</ul>
   </div>`;
 }
+
+/** The models that can be fitted, first the choice between them. @param {import("../state/store.js").State} state
+ * @returns {{key: string, title: string, words: string}[]} */
+const modelsOf = ({ about }) => about?.models ?? [];
 
 /** Begins a fit of records, and shows it; gives the sentence why it cannot be begun. @param {Store} store
  * @param {Api} api @param {any[]} records @param {{model: string, config?: object}} asked @param {string} [label] */
@@ -133,7 +138,7 @@ function Fit({ store, api, job, main }) {
   const { result } = job;
   const struts = Object.keys(strutTexts(store.get()));
   const several = struts.length > 1;
-  const words = store.get().about?.model_words?.[result?.model];
+  const words = modelsOf(store.get()).find(({ key }) => key === result?.model)?.words;
   /** @type {{identified: boolean, sentence: string}[]} */
   const parameters = result?.device ? Object.values(result.parameters) : [];
   return html`<section class="fit" data-state=${job.state}>
@@ -144,6 +149,8 @@ function Fit({ store, api, job, main }) {
       message: result.reason }]} />
       <${Causes} store=${store} api=${api} result=${result} main=${main && !result.device} />
       <p><b>${result.model}</b>${words && `: ${words}`}</p>
+      ${isOk(result.status) && html`<p>${parameters.every(({ identified }) => identified)
+        && html`<b>Reliable estimates.</b>`} ${result.residual.join(" ")}</p>`}
       <${Table} label="Identified values" heads=${["parameter", "value", "95 % interval"]}>
         ${Object.entries(result.shown).map(([name, [value, interval]]) => html`<tr key=${name}>
           <th scope="row">${name}</th><td class="number">${value}</td><td class="number">${interval}</td></tr>`)}

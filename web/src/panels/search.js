@@ -183,22 +183,27 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
   const { index, ranking, frontier, real_inerters: real } = one;
   const written = unitFor(state.about, ranking.map((/** @type {Row} */ { value }) => value), one.unit);
   const compared = complete && baseline !== null;
-  const against = compared ? [`against ${baseline}`] : [];
+  const against = compared ? [`gain on ${baseline}`] : [];
   /** @type {string[]} */
   const methods = [...new Set(real.map((/** @type {Row} */ { method }) => method))];
-  /** @param {string} label @param {string} words @param {Row[]} rows @param {boolean} [ranked] */
-  const table = (label, words, rows, ranked = false) => html`<p class="quiet">${words}</p>
-    <${Table} key=${label} label=${label} heads=${["network", withUnit(index, written.unit), ...against, ""]}>
+  /** @param {string} label @param {string} words @param {Row[]} rows
+   * @param {{numbered?: (row: Row, i: number) => number, stepped?: boolean}} [how]  `stepped`: compared with the
+   * row before */
+  const table = (label, words, rows, { numbered, stepped = false } = {}) => html`<p class="quiet">${words}</p>
+    <${Table} key=${label} label=${label} heads=${["network", withUnit(index, written.unit),
+      ...(stepped ? ["gain on previous"] : []), ...against, ""]}>
       ${rows.map((row, i) => html`<${NetworkRow} key=${row.network} state=${state} row=${row} take=${take}
-        rank=${ranked ? i + 1 : undefined} factor=${written.factor} compared=${compared} />`)}
+        number=${numbered?.(row, i)} factor=${written.factor} stepped=${stepped} compared=${compared} />`)}
     <//>`;
   return html`<${Doubts} members=${[...ranking, ...real].map(({ network, status, message }) =>
       ({ of: network, status, message }))} />
     ${ranking.length === 0 && html`<p class="quiet">No network is optimised yet.</p>`}
     ${frontier.length > 1 && html`<${Frontier} about=${state.about} one=${one} baseline=${baseline} written=${written}
-      take=${take} />`}
+      take=${take} />
+      ${table("Frontier", "The best network for each number of elements, and what one more gains", frontier,
+        { numbered: ({ n_elements: count }) => count, stepped: true })}`}
     ${ranking.length > 0 && table("Ranking", `The best ${ranking.length} ${complete ? `of ${networks} networks`
-      : "so far"} (* at a bound)`, ranking, true)}
+      : "so far"} (* at a bound)`, ranking, { numbered: (_, i) => i + 1 })}
     ${methods.map((method) => table(`Real inerters by ${method}`,
       `With real inerters, elastic and with friction: optimised by ${method}`,
       real.filter((/** @type {Row} */ row) => row.method === method)))}`;
@@ -208,18 +213,19 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
 const optimised = ({ value, standard_error: error }) =>
   (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
 
-/** @param {{state: State, row: Row, rank?: number, factor: number, compared: boolean,
+/** @param {{state: State, row: Row, number?: number, factor: number, stepped: boolean, compared: boolean,
  * take: (row: Row) => void}} props */
-function NetworkRow({ state, row, rank, factor, compared, take }) {
+function NetworkRow({ state, row, number, factor, stepped, compared, take }) {
   const { network, status, improvement_percent: part, ideal, same_values: same } = row;
   return html`<tr data-network=${network}>
-    <th scope="row"><div class="found"><span>${rank}</span><${Sketch} state=${state} tree=${row.tree} />
+    <th scope="row"><div class="found"><span>${number}</span><${Sketch} state=${state} tree=${row.tree} />
       <div><code>${network}</code><div class="scatter">${valuesIn(state.about, { ...row.elements, ...row.values },
         row.active_bounds)}</div></div></div></th>
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
       ${optimised(scaled(row, factor))}
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
+    ${stepped && html`<td class="number">${signed(row.gain_on_previous_percent)}</td>`}
     ${compared && html`<td class="number">${signed(part)}</td>`}
     <td><button type="button" title="Take it into the editor" onClick=${() => take(row)}>Take</button></td>
   </tr>`;

@@ -32,8 +32,8 @@ export function TolerancePanel({ store, api }) {
     `tolerance-${value.index}.csv`);
   return html`<form aria-busy=${is === "coming"} onSubmit=${formHandler((form) =>
     void seekNow(store, api, "tolerance", { index: form.get("index"), spread: spreadOf(names, form) }))}>
-    <p class="quiet">How far each value of ${document.layout} may lie above or below its own; all between is equally
-      likely. What is empty does not scatter.</p>
+    <p class="quiet">Relative tolerance of each value of ${document.layout}: the half-width, uniformly distributed. A
+      value without one is held.</p>
     <div class="row spreads">
       ${names.map((name) => html`<label key=${name}><span>
         <span class="symbol-name"><${Name} label=${name} /></span> ±</span> <input name=${`spread ${name}`}

@@ -71,25 +71,27 @@ function FindBest({ store, api }) {
   const state = store.get();
   const { study, layout } = state.history.present;
   const goal = goalOf(state);
+  const all = Object.keys(study.layouts ?? {}).filter((name) => !isSearched(state, name));
   const nothing = { text: "", of: null };
   const [told, setTold] = useState(/** @type {{text: any, of: Document | null}} */ (nothing));
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
   const isMain = !isSearched(state, layout) && !isFitting(state);
-  const ready = goal && method && layout !== "";
+  const ready = goal && method && all.length > 0;
   return html`<form class="optimise" onSubmit=${formHandler(async (_, { submitter }) => {
     if (!ready) return;
-    const all = submitter?.getAttribute("value") === "all";
     setTold({ text: html`<${Moving} what="Searching" />`, of: state.history.present });
-    const text = await optimise(store, api, { study, layouts: all ? Object.keys(study.layouts ?? {}) : [layout],
+    const layouts = submitter?.getAttribute("value") === "one" ? [layout] : all;
+    const text = await optimise(store, api, { study, layouts,
       index: goal, method: method.name });
     const { present } = store.get().history;
     setTold(present.study === study ? { text, of: present } : nothing);
   })}>
     <div class="head"><h2 id="values-title">Values</h2>
-      <button value="all" disabled=${!ready}>All layouts</button>
-      <button class=${isMain ? "main" : ""} id="find-best" disabled=${!ready}>
-        Find best <kbd>O</kbd></button></div>
+      ${all.length > 1 && all.includes(layout) && html`<button value="one" disabled=${!ready}
+        title="The others keep their values">Only ${layout}</button>`}
+      <button class=${isMain ? "main" : ""} id="find-best" disabled=${!ready}
+        title="Of all layouts, so that they are compared at their best">Find best <kbd>O</kbd></button></div>
     <p role="status">${told.of === state.history.present && told.text}</p>
   </form>`;
 }

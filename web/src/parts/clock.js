@@ -34,10 +34,10 @@ export function Moving({ what, since = null }) {
     && html` <progress aria-label=${what}></progress> <${Clock} since=${since ?? begun} />`}</span>`;
 }
 
-const WORDS = { current: "current", coming: "coming", none: "no answer", lost: "no server" };
+const WORDS = { current: "", coming: "coming", none: "no answer", lost: "no server" };
 const BEFORE = ", former values";
 
-/** Whether what stands below is the answer to what is asked now.
+/** That what stands below is not the answer to what is asked now; nothing where it is.
  * @param {{shown: import("../state/answers.js").Shown}} props */
 export function Being({ shown: { is, before, lost } }) {
   const coming = is === "coming";

@@ -1,6 +1,7 @@
 // What is written over the picture: how the vehicle stands, how large motions are drawn, whose outline is dashed.
 
 import { NARROW } from "./layout.js";
+import { capital } from "../state/scale.js";
 import { inWords } from "./naming.js";
 import { liftOf } from "./scene.js";
 import { line, text } from "./symbols.js";
@@ -13,17 +14,17 @@ const BARS = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 40, 50, 100, 200, 500, 1000]; // [
 const SHORTEST = 22; // [px]
 const STILL = 1e-9; // [rad]
 
-/** @param {Layout} made @param {{moment: Moment, motion: Motion, passing: number}} moved
+/** @param {Layout} made @param {{moment: Moment, motion: Motion}} moved
  * @param {{own: string, other: string} | null} names of the design and of the one that is dashed @returns {Shape[]} */
 export function captions(made, moved, names) {
   const { width, height, scene } = made;
   const narrow = width < NARROW;
   /** @type {Shape[]} */
   const into = [...scaleBar(made, narrow)];
-  const large = `drawn ${made.times} times as large`;
-  const road = scene.tracks.length > 0 && scene.column ? `, the road at ${moved.passing} px a second` : "";
+  const large = `motions drawn ${made.times} times as large`;
+  const road = scene.tracks.length > 0 && scene.column ? "; road length not to scale" : "";
   const above = standing(made, moved, large);
-  if (above.length === 0) into.push(text(12, height - 10, `heights ${large}${road}`, "on earth"));
+  if (above.length === 0) into.push(text(12, height - 10, `${capital(large)}${road}`, "on earth"));
   above.forEach((words, i) => into.push(text(12, (narrow ? 60 : 18) + 16 * i, words, "quiet")));
   if (names) into.push(...legend(made, names, narrow, above.length));
   return into;

@@ -199,7 +199,7 @@ class FitFinding(FindingKind):
         lambda f: (
             (
                 f"{f.about} includes the fixture mass between load cell and device, which cannot be separated from the "
-                f"inertance. Weigh it and pass ",
+                f"inertance. Weigh it and state it as ",
                 *(Remedy(Action.FIXTURE_MASS), "."),
             )
         ),

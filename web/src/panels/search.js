@@ -9,7 +9,7 @@ import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf, strutTexts } from "../questions.js";
 import { entryAt, own, strutsOf, textOf } from "../state/document.js";
-import { estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
+import { aligned, estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
   from "../state/scale.js";
 import { takeNetwork } from "../working.js";
 import { indexAxis, indicesOf, signed } from "./answers.js";
@@ -211,7 +211,7 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
 
 /** The best value with its standard uncertainty. @param {Row} row */
 const optimised = ({ value, standard_error: error }) =>
-  (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : shown(value));
+  (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : aligned(value, 5));
 
 /** @param {{state: State, row: Row, number?: number, factor: number, stepped: boolean, compared: boolean,
  * take: (row: Row) => void}} props */

@@ -639,3 +639,12 @@ def test_a_load_that_a_leak_has_not_passed_to_its_spring_is_no_steady_state(rela
         np.trapezoid(load, t) / t[-1] / stiffness, rel=1e-5
     )
     assert (run.status.ok, rests) == (settles, settles)
+
+
+def test_a_motion_that_repeats_in_the_second_period_is_steady() -> None:
+    """What the second of two periods changes is above rounding, below what counts as a change, and no creep."""
+    car = it.QuarterCar(181.75, 25.0, 150e3, it.Spring(40e3) | it.Damper(8e3))
+    run = it.simulate(car, road=it.cosine(1e-3, 0.2, speed=20.0), step=2.5e-3, initial="periodic")
+    assert run.repetition.periods == 2
+    assert run.repetition.mismatch > 0.0
+    assert run.status.ok

@@ -134,7 +134,8 @@ def _repeat_period(
         mismatch = integration.mismatch(begun)
         ends.append(integration.state)
         changes.append(mismatch)
-    creep = _creep(integration.mismatch(ends[periods // 2]), changes[periods // 2 :])
+    half = (periods - 1) // 2
+    creep = _creep(integration.mismatch(ends[half]), changes[half:])
     return integration, PeriodicState(float(again.time[-1] - again.time[0]), periods, mismatch, creep)
 
 

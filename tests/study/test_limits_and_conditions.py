@@ -346,6 +346,13 @@ def test_conditions_are_told_and_written_as_they_were(load: Callable[..., Study]
     assert all(f'"{text}"' in write_resolved(study) for text in ("50 km/h", "0.32 t"))
 
 
+def test_names_that_look_like_quantities_are_written_as_they_were(load: Callable[..., Study], tmp_path: Path) -> None:
+    sections = '[[conditions]]\nroad.speed = "50 km/h"\n[[conditions]]\nvehicle.sprung_mass = "0.32 t"\nname = "320 kg"\n'
+    study = load('indices = ["J1"]\noptimise = "norm"', sections)
+    again = assert_survives(study, tmp_path)
+    assert [one.name for one in again.conditions] == ["", "320 kg"]
+
+
 @pytest.mark.parametrize(
     ("error", "bound", "text"), [(2.0, 0.01, "900 N"), (np.nan, 1e-3, "902 N"), (2.0, 0.0, "902.3 +- 2.0 N")]
 )

@@ -157,11 +157,25 @@ def range_codec(
     )
 
 
+class QuantityText(str):
+    """A number with its SI unit as text, to the last bit; other texts of a file may look like one."""
+
+    number: float
+    unit: str
+
+
+def exact_text(number: float, unit: str) -> QuantityText:
+    """A number with its SI unit as text."""
+    text = QuantityText(f"{number!r} {unit}")
+    text.number, text.unit = number, unit
+    return text
+
+
 def text_of(value: float | Free, unit: str) -> str | dict[str, str]:
     """A value with its SI unit as text, to the last bit; a table of two for one that is free."""
     if isinstance(value, Free):
-        return {LOWER: f"{value.lower!r} {unit}", UPPER: f"{value.upper!r} {unit}"}
-    return f"{value!r} {unit}"
+        return {LOWER: exact_text(value.lower, unit), UPPER: exact_text(value.upper, unit)}
+    return exact_text(value, unit)
 
 
 def with_bounds(number: Number) -> Iterator[tuple[KeyPath, Number]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from inerter.field_metadata import fields_of
+from inerter.files.common.entries import exact_text
 from inerter.files.common.ties import with_known_values
 from inerter.files.study.place import Place, element_at, place_of
 from inerter.files.study.places import number_at, with_numbers
@@ -34,7 +35,7 @@ class StudyCondition:
     def entry(self, study: Study) -> ConditionEntry:
         """Table entry of the condition for the study file."""
         units = {label: found.unit for label in self.numbers if (found := number_at(study, place_of(label)))}
-        numbers = {label: f"{number!r} {units[label]}" for label, number in self.numbers.items()}
+        numbers = {label: exact_text(number, units[label]) for label, number in self.numbers.items()}
         return ConditionEntry(numbers=numbers, share=self.share, name=self.name or None)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, NamedTuple
 
 from inerter.files.common.codec import Codec, KeyPath, LoadContext, TableCodec, key, keyed_dataclass, keys_in
-from inerter.files.common.entries import TEXT, Amount, QuantityCodec
+from inerter.files.common.entries import TEXT, Amount, QuantityCodec, exact_text
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import quantity_schema
@@ -57,7 +57,7 @@ class AmountCodec(Codec):
 
     def dump(self, value: Amount) -> str:
         """The text in that unit."""
-        return f"{value.value!r} {value.unit}"
+        return exact_text(value.value, value.unit)
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of the text."""

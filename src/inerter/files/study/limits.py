@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from inerter.errors import InerterError
 from inerter.files.common.codec import Codec, KeyPath, RawEntry, Scalar, key, keyed_dataclass, table_of, without_none
 from inerter.files.common.codecs import ByPlaceCodec
-from inerter.files.common.entries import quantity_text
+from inerter.files.common.entries import exact_text, quantity_text
 from inerter.files.common.number import Number
 from inerter.files.common.problem import EntryError, Problem, at, collect_problem, invalid_entry
 from inerter.files.common.schema import quantity_schema
@@ -67,7 +67,7 @@ class StudyLimit:
 
     def entry(self) -> str | float:
         """Value of the limit for the study file: a number if dimensionless, else text with the unit."""
-        return self.value if are_compatible(self.unit, PURE) else f"{self.value!r} {self.unit}"
+        return self.value if are_compatible(self.unit, PURE) else exact_text(self.value, self.unit)
 
 
 def _limit_text(value: Any) -> str | float:

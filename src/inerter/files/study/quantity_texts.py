@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Any
 
 from inerter.errors import UnitError
+from inerter.files.common.entries import QuantityText
 from inerter.files.common.roads import remark
 from inerter.files.common.toml import as_toml
 from inerter.files.study.study import Study
@@ -59,16 +60,7 @@ def _rewritten(study: Study, entry: Any) -> Any:
             return {key: _rewritten(study, one) for key, one in entry.items()}
         case list():
             return [_rewritten(study, one) if isinstance(one, dict) else one for one in entry]
-        case str():
-            return _quantity(study, entry) or entry
+        case QuantityText():
+            return as_written(study, entry.number, entry.unit) or entry
         case _:
             return entry
-
-
-def _quantity(study: Study, text: str) -> str | None:
-    """Text in the study file of a number with its SI unit; None for a text that is not a quantity."""
-    number, _, unit = text.partition(" ")
-    try:
-        return as_written(study, float(number), unit) if parse_quantity(text, unit) == float(number) else None
-    except ValueError:  # no number, or no unit
-        return None

@@ -13,7 +13,7 @@ import pytest
 from campaigns import sampled
 from folders import EXAMPLES, ROOT
 
-from inerter.files.study.running import resume_part
+from inerter.files.study.parts import resume_part
 from inerter.papers.wang_su_2008.reproduce import work
 
 STUDIES = sorted(path.name for path in EXAMPLES.glob("*.toml") if "[study]" in path.read_text(encoding="utf-8"))

@@ -15,6 +15,8 @@ from study_text import load_text, study_text
 import inerter as it
 from inerter.cli.main import call
 from inerter.files.study.journal import journal_of, results_of
+from inerter.files.study.search_parts import result_of
+from inerter.files.study.searching import search_study
 from inerter.work import checkpoints
 from inerter.work.checkpoints import Checkpoint
 from inerter.work.progress import count_evaluation
@@ -75,6 +77,32 @@ def test_a_run_interrupted_within_a_design_goes_on_from_its_searches(name: str, 
     for file in ("summary.csv", "results.nc"):
         assert (tmp_path / "out" / file).read_bytes() == (tmp_path / "whole" / file).read_bytes()
     assert it.run_study(study, tmp_path / "out", resume=True).computed == 0
+
+
+def test_a_search_of_networks_interrupted_within_one_goes_on_from_its_searches(tmp_path: Path) -> None:
+    """The last designs are those with a real inerter."""
+    kinds = (
+        'springs = { from = "1 kN/m", to = "1 MN/m" }, dampers_at_most = 0, inerters = { from = "1 kg", to = "1 t" }'
+    )
+    study = load_text(
+        tmp_path,
+        study_text(
+            'indices = ["J1"]\noptimise = "norm"\nreal_inerters = { friction = "10 N", best = 1 }',
+            elements=f'k = "20 kN/m"\nc = "2 kN s/m"\nany = {{ network = 1, {kinds} }}',
+            layouts='S = "k | c | any"',
+        ),
+    )
+    with counted() as every:
+        whole = search_study(study, tmp_path / "whole")
+    with counted(every[0] - 1), pytest.raises(KeyboardInterrupt):
+        search_study(study, tmp_path / "out")
+    journal = journal_of(whole.study, tmp_path / "out" / "journal.jsonl")
+    assert any(isinstance(one, Checkpoint) for one in results_of(journal, result_of))
+    with counted() as again:
+        search_study(study, tmp_path / "out", resume=True)
+    assert again[0] < every[0]
+    for file in ("search.csv", "search_real_inerters.csv"):
+        assert (tmp_path / "out" / file).read_bytes() == (tmp_path / "whole" / file).read_bytes()
 
 
 def test_short_designs_keep_nothing_but_their_outcome(tmp_path: Path) -> None:

@@ -347,7 +347,9 @@ def test_conditions_are_told_and_written_as_they_were(load: Callable[..., Study]
 
 
 def test_names_that_look_like_quantities_are_written_as_they_were(load: Callable[..., Study], tmp_path: Path) -> None:
-    sections = '[[conditions]]\nroad.speed = "50 km/h"\n[[conditions]]\nvehicle.sprung_mass = "0.32 t"\nname = "320 kg"\n'
+    sections = (
+        '[[conditions]]\nroad.speed = "50 km/h"\n[[conditions]]\nvehicle.sprung_mass = "0.32 t"\nname = "320 kg"\n'
+    )
     study = load('indices = ["J1"]\noptimise = "norm"', sections)
     again = assert_survives(study, tmp_path)
     assert [one.name for one in again.conditions] == ["", "320 kg"]

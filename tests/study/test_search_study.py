@@ -6,8 +6,10 @@ import csv
 import json
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from folders import EXAMPLES
@@ -17,13 +19,13 @@ import inerter as it
 from inerter.cli.main import call
 from inerter.errors import StudyError
 from inerter.files.common.toml import read_tables
-from inerter.files.study import searching
 from inerter.files.study.checking import check_lines, search_plans
-from inerter.files.study.running import part_results
+from inerter.files.study.parts import PartResult
 from inerter.files.study.search_parts import GroupResult, NetworkGroup, RealPart, RealResult
 from inerter.files.study.search_tables import real_networks_table
 from inerter.files.study.searching import StudySearch, search_study
 from inerter.files.study.study import Study
+from inerter.files.study.work import StudyWork
 from inerter.networks.enumeration import enumerate_networks
 from inerter.report.search import search_sections, search_sentences
 
@@ -311,9 +313,12 @@ def test_a_baseline_with_friction_is_optimised_by_the_method_of_the_gains(tmp_pa
 def test_results_are_in_the_order_of_the_study_whatever_is_ready_first(
     real: StudySearch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(
-        searching, "part_results", lambda *asked: reversed([[one] for p in part_results(*asked) for one in p])
-    )
+    in_order = StudyWork.compute
+
+    def reversed_parts(self: StudyWork, *asked: Any) -> Iterator[list[PartResult]]:
+        yield from reversed([[one] for ready in in_order(self, *asked) for one in ready])
+
+    monkeypatch.setattr(StudyWork, "compute", reversed_parts)
     late = search_study(real.study, tmp_path / "out")
     assert [one.part for one in late.searches[0].real] == [one.part for one in real.searches[0].real]
     assert [one.part for one in late.fixed] == [one.part for one in real.fixed]

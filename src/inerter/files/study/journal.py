@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from inerter.errors import StudyError
 from inerter.files.study.cases import Outcome
@@ -15,6 +16,7 @@ from inerter.work.checkpoints import Checkpoint
 from inerter.work.journal import Journal
 
 NAME = "journal.jsonl"
+ResultOfEntry = Callable[[Mapping[str, Any]], PartResult]
 
 
 def journal_of(study: Study, path: Path) -> Journal:
@@ -22,13 +24,18 @@ def journal_of(study: Study, path: Path) -> Journal:
     return Journal(path, json.loads(json.dumps(study.to_tables(), sort_keys=True)))
 
 
-def results_of(journal: Journal) -> Iterator[PartResult | Checkpoint]:
+def result_of(entry: Mapping[str, Any]) -> PartResult:
+    """Result that an entry has: of a part of a task, or of a design."""
+    return answer_of(entry) if "task" in entry else Outcome(**entry)
+
+
+def results_of(journal: Journal, make: ResultOfEntry = result_of) -> Iterator[PartResult | Checkpoint]:
     """Results of finished parts, and the state of unfinished searches, one at a time.
 
     Raises `StudyError` for an entry that is none of a study.
     """
     for entry in journal.read():
         try:
-            yield answer_of(entry) if "task" in entry else Checkpoint(**entry) if "rows" in entry else Outcome(**entry)
+            yield Checkpoint(**entry) if "rows" in entry else make(entry)
         except TypeError:
             raise StudyError(f"{journal.path}: not the journal of a study. Choose another folder with -o.") from None

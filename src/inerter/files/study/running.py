@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -20,28 +19,25 @@ from inerter.deprecation import RenamedAttribute
 from inerter.errors import OK, Status, StatusKind, StudyError
 from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
-from inerter.files.study.cases import Outcome, portable
+from inerter.files.study.cases import Outcome
 from inerter.files.study.checking import check_study, kernels
-from inerter.files.study.parts import KnownSearches, PartResult, StudyPart, lost_part, resume_part
+from inerter.files.study.parts import PartResult, StudyPart
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.results import DatasetBuilder
 from inerter.files.study.study import Study
 from inerter.files.study.summary import write_summary
 from inerter.files.study.task_registry import TASKS
-from inerter.files.study.tasks import Answer, Designs, TaskResults, by_task, journal_entry, parts_of
+from inerter.files.study.tasks import Answer, TaskResults, by_task, parts_of
+from inerter.files.study.work import StudyWork
 from inerter.formatting import format_list
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.table import csv_rows, csv_text
 from inerter.validation import checked
-from inerter.work.checkpoints import Checkpoint, join_checkpoints, storing_checkpoints
-from inerter.work.journal import Journal
 from inerter.work.origin import versions
 from inerter.work.pool import Pool, worker_pool
-from inerter.work.progress import logging_steps
 from inerter.work.returns import check_all_results
 
 RESOLVED, SUMMARY, DATASET, VERSIONS = "study.resolved.toml", "summary.csv", "results.nc", "versions.json"
-_Done = dict[StudyPart[Any], Answer]
 Progress = Callable[[int, int, PartResult | None, int], None]
 
 
@@ -195,9 +191,16 @@ def _compute_outcomes(
     study: Study, results: Results, pool: Pool, progress: Progress, compiling: ProgressCallback | None
 ) -> tuple[DatasetBuilder, tuple[Answer, ...], int]:
     """All cases, the answers of tasks in the order of their parts, and how many cases were not in the journal."""
-    journal = journals.journal_of(study, results.place / journals.NAME)
     found = DatasetBuilder(study)
-    done, known = _read(journal, found) if results.resume else ({}, {})
+    done: dict[StudyPart[Any], Answer] = {}
+
+    def enter(result: PartResult) -> None:
+        if isinstance(result, Outcome):
+            found.enter(result)
+        elif isinstance(result, Answer):
+            done[result.part] = result
+
+    work = StudyWork(study, results, pool, enter)
     parts = parts_of(study)
     pending, left = found.pending(), [part for part in parts if part not in done]
     if pending or left:
@@ -209,50 +212,11 @@ def _compute_outcomes(
         progress(found.count + len(done), total, last, found.n_failures + troubled)
 
     tell(None)
-    results.list_journal(journals.NAME)
-    with (
-        logging_steps(),
-        journal.appending(results.resume) as append,
-        storing_checkpoints(lambda kept: append(kept.to_json())),
-    ):
-        of_designs = part_results(study, {}, pending, pool, known)
-        of_tasks = part_results(study, found.designs, left, pool, known)
-        for ready in chain(of_designs, of_tasks):
-            append(*map(journal_entry, ready))
-            for result in ready:
-                _enter(result, found, done)
+    with work.journalling():
+        for ready in chain(work.compute(pending, {}), work.compute(left, found.designs)):
             tell(ready[-1])
         check_all_results(total - len(found.pending()) - len(set(parts) - set(done)), total)
     return found, tuple(done[part] for part in parts), len(pending)
-
-
-def _read(journal: Journal, found: DatasetBuilder) -> tuple[_Done, KnownSearches]:
-    """Enter the outcomes of a journal; returns its answers, and the states of unfinished searches."""
-    done: _Done = {}
-    searches: dict[str, list[Checkpoint]] = {}
-    for one in journals.results_of(journal):
-        if isinstance(one, Checkpoint):
-            searches.setdefault(one.name, []).append(one)
-            continue
-        searches.pop(one.name, None)
-        _enter(one, found, done)
-    return done, {name: join_checkpoints(several) for name, several in searches.items()}
-
-
-def _enter(result: PartResult, found: DatasetBuilder, done: _Done) -> None:
-    """Store the result of a design or of a part of a task."""
-    if isinstance(result, Outcome):
-        found.enter(result)
-    elif isinstance(result, Answer):
-        done[result.part] = result
-
-
-def part_results(
-    study: Study, designs: Designs, pending: Iterable[StudyPart[Any]], pool: Pool, known: KnownSearches
-) -> Iterator[list[PartResult]]:
-    """Lists of results of parts, in the order in which they are completed; searches begun go on from what is known."""
-    run = partial(resume_part, portable(study), designs, known)
-    return pool.batches(run, pending, partial(run, threads=pool.jobs), partial(lost_part, portable(study)))
 
 
 def _prepare(pool: Pool, study: Study, compiling: ProgressCallback | None) -> None:

@@ -8,6 +8,7 @@ from math import nan
 from typing import Any
 
 from inerter.errors import Status, StatusKind
+from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.limits import all_limits
 from inerter.files.study.parts import PartResult, StudyPart
@@ -247,9 +248,9 @@ class RealResult(PartResult):
 
 
 def result_of(entry: Mapping[str, Any]) -> PartResult:
-    """The result that a line of the journal of a search has."""
+    """The result that a line of the journal of a search has: of networks, or of a design."""
     for key, kind in (("networks", GroupResult), ("points", NetworkFrontResult), ("kept", RealResult)):
         if key in entry:
             made: PartResult = kind(**entry)
             return made
-    return Outcome(**entry)
+    return journals.result_of(entry)

@@ -11,12 +11,12 @@ from typing import Any
 
 from inerter.atomic_io import write_text
 from inerter.errors import OK, Status, StatusKind
-from inerter.files.common.folder import FIGURES, REPORT, WriteMode, open_results
+from inerter.files.common.folder import FIGURES, REPORT, Results, WriteMode, open_results
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.checking import fixed_part, kernels, search_plans
 from inerter.files.study.parts import PartResult, StudyPart
-from inerter.files.study.running import RESOLVED, VERSIONS, Progress, part_results, write_study
+from inerter.files.study.running import RESOLVED, VERSIONS, Progress, write_study
 from inerter.files.study.search_parts import (
     GroupResult,
     NetworkFrontPart,
@@ -28,6 +28,7 @@ from inerter.files.study.search_parts import (
 )
 from inerter.files.study.search_tables import front_table, improvement, networks_table, real_table
 from inerter.files.study.study import Study, searched_layouts
+from inerter.files.study.work import StudyWork
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.methods.error_bounds import improvement_bound
 from inerter.network_search.front_results import NetworkFront
@@ -37,7 +38,6 @@ from inerter.network_search.results import FoundNetwork, SearchResult, collect_r
 from inerter.networks.parser import names
 from inerter.table import Table, csv_rows, csv_text
 from inerter.work.pool import Pool, worker_pool
-from inerter.work.progress import logging_steps
 from inerter.work.returns import check_all_results
 
 TABLE, FRONT_TABLE, REAL_TABLE = "search.csv", "search_front.csv", "search_real_inerters.csv"
@@ -139,14 +139,9 @@ def search_study(
     plans = search_plans(study)
     mode = WriteMode(Path(folder), "search", _result_names(), study.inputs, resume, force)
     with open_results(mode) as results, worker_pool(jobs, executor) as pool:
-        journal = journals.journal_of(study, results.place / journals.NAME)
-        done: dict[Any, PartResult] = (
-            {one.part: one for one in map(result_of, journal.read())} if results.resume else {}
-        )
-        results.list_journal(journals.NAME)
-        with logging_steps(), journal.appending(results.resume) as append:
-            work = _Work(study, pool, append, done, progress, compiling, on_groups)
-            found = _search(study, plans, work, results.folder)
+        search = _Search(study, results, pool, progress, compiling, on_groups)
+        with search.work.journalling():
+            found = _search(study, plans, search, results.folder)
         write_study(study, results.draft)
         for name, table in tables_of(found).items():
             write_text(results.draft / name, csv_text(csv_rows(table)))
@@ -169,24 +164,24 @@ def tables_of(found: StudySearch) -> dict[str, Table]:
     return tables
 
 
-def _search(study: Study, plans: Mapping[tuple[str, str], SearchPlan], work: _Work, folder: Path) -> StudySearch:
+def _search(study: Study, plans: Mapping[tuple[str, str], SearchPlan], search: _Search, folder: Path) -> StudySearch:
     """Networks for each index, then their front, then the best of them with real inerters."""
-    work.prepare(_kernels(study, plans), *_parts(study, plans))
-    outcomes = tuple(one for one in work.compute(_parts(study, plans)) if isinstance(one, Outcome))
-    searches = list(_searches(study, plans, work.done))
-    fronts = tuple(_fronts(study, plans, searches, work)) if study.trade_off else ()
+    search.prepare(_kernels(study, plans), *_parts(study, plans))
+    outcomes = tuple(one for one in search.compute(_parts(study, plans)) if isinstance(one, Outcome))
+    searches = list(_searches(study, plans, search.done))
+    fronts = tuple(_fronts(study, plans, searches, search)) if study.trade_off else ()
     parts = [part for one in searches for part in _real_parts(study, one)]
-    real = [one for one in work.compute(parts) if isinstance(one, RealResult)]
-    work.end()
+    real = [one for one in search.compute(parts) if isinstance(one, RealResult)]
+    search.end()
     searches = [
         replace(one, real=tuple(each for each in real if (each.layout, each.index) == (one.layout, one.index)))
         for one in searches
     ]
-    return StudySearch(folder, study, tuple(searches), outcomes, fronts, work.computed)
+    return StudySearch(folder, study, tuple(searches), outcomes, fronts, search.computed)
 
 
 def _fronts(
-    study: Study, plans: Mapping[tuple[str, str], SearchPlan], searches: Sequence[LayoutSearch], work: _Work
+    study: Study, plans: Mapping[tuple[str, str], SearchPlan], searches: Sequence[LayoutSearch], search: _Search
 ) -> Iterator[LayoutFront]:
     """The front over the networks of each layout; the waves are those of an uninterrupted search."""
     layouts = list(dict.fromkeys(layout for layout, _ in plans))
@@ -204,7 +199,7 @@ def _fronts(
                     NetworkFrontPart(layout, number, plan.plans[0].topology_text(one.topology), one, sent, scale)
                     for one in tasks
                 ]
-                found = [one for one in work.compute(parts) if isinstance(one, NetworkFrontResult)]
+                found = [one for one in search.compute(parts) if isinstance(one, NetworkFrontResult)]
                 scale, tasks = waves.send([one.network_points() for one in found])
                 number += 1
         except StopIteration as end:
@@ -236,29 +231,32 @@ def _parts(study: Study, plans: Mapping[tuple[str, str], SearchPlan]) -> list[Ca
     return [*fixed, *groups]
 
 
-class _Work:
-    """The work of a search: parts are computed once, and their results kept in the journal."""
+class _Search:
+    """The results of a search so far, by their parts, and their progress."""
 
     def __init__(
         self,
         study: Study,
+        results: Results,
         pool: Pool,
-        append: Callable[..., object],
-        done: dict[Any, PartResult],
         progress: Progress,
         compiling: ProgressCallback | None,
         on_groups: Callable[[list[GroupResult]], object],
     ) -> None:
-        self.study, self.pool, self.append, self.done = study, pool, append, done
+        self.done: dict[Any, PartResult] = {}
+        self.work = StudyWork(study, results, pool, self._enter, result_of)
         self.progress, self.compiling, self.on_groups = progress, compiling, on_groups
         self.total = self.ready = 0  # networks of all parts so far, and those with a result
         self.computed = 0  # those of this run
         self.more = int(bool(study.trade_off) or study.real_inerters is not None)  # whether further parts will follow
 
+    def _enter(self, result: PartResult) -> None:
+        self.done[result.part] = result
+
     def prepare(self, kernels: list[Any], *parts: StudyPart[Any]) -> None:
         """Compile what the parts call, unless all of them are done."""
         if any(part not in self.done for part in parts):
-            prepare_on(self.pool, kernels, self.compiling)
+            prepare_on(self.work.pool, kernels, self.compiling)
 
     def compute(self, parts: Sequence[StudyPart[Any]]) -> list[PartResult]:
         """Results of the parts, in their order."""
@@ -270,9 +268,7 @@ class _Work:
         if not is_begun:
             self._tell(known, None)
         designs = {part: one for part, one in self.done.items() if isinstance(one, Outcome)}
-        for ready in part_results(self.study, designs, pending, self.pool, {}):
-            self.append(*(one.to_json() for one in ready))
-            self.done |= {one.part: one for one in ready}
+        for ready in self.work.compute(pending, designs):
             self.ready += sum(sizes[one.part] for one in ready)
             self._tell(ready, ready[-1])
         check_all_results(len(parts) - len(set(parts) - set(self.done)), len(parts))

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.app.designs import Design, baseline_of, designs_of, given_design
+from inerter.app.designs import Design, baseline_of, describe_index, designs_of, given_design
 from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell, report_nothing
@@ -173,11 +173,9 @@ def _best(found: Sequence[DesignEstimate]) -> list[int]:
 
 def describe_result(one: DesignEstimate, baseline: DesignEstimate | None) -> Answer:
     """Value and status of an index for an answer, with its improvement over the baseline; null if not comparable."""
-    study, estimate = one.design.study, one.estimate
+    estimate = one.estimate
     return {
-        "index": one.index,
-        "title": study.index(one.index).title,
-        "unit": study.unit(one.index),
+        **describe_index(one.design.study, one.index),
         "method": one.method,
         "notes": list(estimate.notes),
         "realisations": estimate.realisations,

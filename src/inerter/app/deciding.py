@@ -9,7 +9,7 @@ from math import isfinite, nan
 from typing import Any
 
 from inerter.app.comparing import DesignEstimate, describe_estimate, describe_result, evaluate_design, improvement_of
-from inerter.app.designs import Design, baseline_of, designs_of, one_design, problem_digest
+from inerter.app.designs import Design, baseline_of, describe_index, designs_of, one_design, problem_digest
 from inerter.app.index_values import DesignLimit, limits_at
 from inerter.app.kinds import Tell, report_nothing
 from inerter.app.wire import typeset_sentences
@@ -57,9 +57,7 @@ def decision(study: Study, body: Body) -> Answer:
     )
     return {
         "goal": {
-            "index": goal,
-            "title": study.index(goal).title,
-            "unit": study.unit(goal),
+            **describe_index(study, goal),
             "sentence": typeset(goal_sentence(study, goal, method)),
         },
         "method": method,

@@ -104,6 +104,11 @@ def _given_design(of: _SameStudy, layout: str, values: tuple[tuple[str, Any], ..
     return design_of(of.study, layout, dict(values), name)
 
 
+def describe_index(study: Study, index: str) -> dict[str, str]:
+    """Name, title and unit of an index for an answer."""
+    return {"index": index, "title": study.index(index).title, "unit": study.unit(index)}
+
+
 def problem_digest(study: Study, layout: str, index: str) -> str:
     """Digest of the problem that an optimum of a layout solves; empty without a design variable.
 

@@ -10,7 +10,7 @@ from typing import Any
 import xarray as xr
 
 from inerter.app.answers import Body, texts_of
-from inerter.app.designs import problem_digest
+from inerter.app.designs import describe_index, problem_digest
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.atomic_io import write_text
@@ -45,10 +45,13 @@ def front(body: Body, folder: Path, tell: Tell) -> Any:
     table = Fronts().table(TaskResults(asked, xr.Dataset(), found))
     write_text(folder / RESULTS / csv_of(Fronts.key), csv_text(csv_rows(table)))
     tell(len(layouts), len(layouts), "")
-    told = [{"index": index, "title": study.index(index).title, "unit": study.unit(index)} for index in indices]
     baseline = study.baseline or next(iter(study.layouts))
     base = next((one for one in found if one.layout == baseline), None)
-    return {"indices": told, "baseline": baseline, "fronts": [_describe_front(asked, one, base) for one in found]}
+    return {
+        "indices": [describe_index(study, index) for index in indices],
+        "baseline": baseline,
+        "fronts": [_describe_front(asked, one, base) for one in found],
+    }
 
 
 def _describe_front(study: Study, found: FrontAnswer, base: FrontAnswer | None) -> dict[str, Any]:

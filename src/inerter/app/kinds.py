@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 from inerter.formatting import format_list
@@ -35,6 +37,31 @@ def tell_compiling(tell: Tell) -> Callable[[str, int, int], None]:
             tell(0, 0, f"preparing compiled code, once on this computer: {title}, {number} of {total}")
 
     return compiling
+
+
+def job_arguments(
+    tell: Tell, write: Callable[[Any, Path], object], words: Callable[[Any], tuple[Any, ...]]
+) -> dict[str, Any]:
+    """Arguments of `run_study` or `search_study` in a job: processes, reports of progress, and `write` at the end.
+
+    `words` gives what is told after a part with this result, and perhaps a result so far.
+    """
+    done = [0]
+
+    def on_part_done(count: int, total: int, last: Any, n_failures: int) -> None:
+        done[0] = count
+        tell(count, total, *words(last))
+
+    def finish(result: Any, into: Path) -> None:
+        tell(done[0], done[0], "figures and report")
+        write(result, into)
+
+    return {
+        "jobs": max((os.cpu_count() or 2) - 1, 1),
+        "progress": on_part_done,
+        "compiling": tell_compiling(tell),
+        "finish": finish,
+    }
 
 
 Request = Mapping[str, Any]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import isfinite, nan
@@ -10,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from inerter.app.answers import Body, texts_of, tree_of
+from inerter.app.designs import describe_index
 from inerter.app.documents import searched_study_from
-from inerter.app.kinds import RESULTS, Tell, tell_compiling
+from inerter.app.kinds import RESULTS, Tell, job_arguments
 from inerter.errors import OK, Status, StatusKind, StudyError
 from inerter.files.study.checking import search_plans
 from inerter.files.study.parts import PartResult
@@ -41,27 +41,8 @@ def search(body: Body, folder: Path, tell: Tell) -> Any:
     document = body["study"]
     study = _one_layout(searched_study_from(document), body)
     ranking = _Ranking(document, study, search_plans(study))
-    done = [0]
-
-    def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
-        done[0] = count
-        tell(count, total, ranking.progress(last), ranking.so_far())
-
-    def show(found: StudySearch, into: Path) -> None:
-        tell(done[0], done[0], "figures and report")
-        write_search_report(found, into)
-
-    found = search_study(
-        study,
-        folder / RESULTS,
-        jobs=max((os.cpu_count() or 2) - 1, 1),
-        resume=True,
-        progress=on_part_done,
-        compiling=tell_compiling(tell),
-        on_groups=ranking.add,
-        finish=show,
-    )
-    return ranking.final(found)
+    arguments = job_arguments(tell, write_search_report, lambda last: (ranking.progress(last), ranking.so_far()))
+    return ranking.final(search_study(study, folder / RESULTS, resume=True, on_groups=ranking.add, **arguments))
 
 
 def _one_layout(study: Study, body: Body) -> Study:
@@ -174,10 +155,7 @@ class _Ranking:
         baseline: float = nan,
     ) -> dict[str, Any]:
         rows = {"ranking": ranking, "frontier": frontier, "real_inerters": real}
-        return {**self._describe_index(index), "baseline_value": baseline, **rows}
-
-    def _describe_index(self, index: str) -> dict[str, str]:
-        return {"index": index, "title": self.study.index(index).title, "unit": self.study.unit(index)}
+        return {**describe_index(self.study, index), "baseline_value": baseline, **rows}
 
     def _of_network(self, one: LayoutSearch, network: FoundNetwork) -> dict[str, Any]:
         return self._row(self.plans[self.layout, one.index], network.topology, network.parameters) | {
@@ -217,7 +195,7 @@ class _Ranking:
             for (count, front), (_, before) in zip(several, [(0, ()), *several[:-1]], strict=True)
             if front != before
         ]
-        return {"indices": [self._describe_index(index) for index in found.study.trade_off], "fronts": fronts}
+        return {"indices": [describe_index(self.study, index) for index in found.study.trade_off], "fronts": fronts}
 
     def _of_point(self, found: StudySearch, point: FrontNetwork) -> dict[str, Any]:
         plan = next(iter(self.plans.values()))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -14,11 +13,10 @@ from inerter.app.comparing import compare_designs
 from inerter.app.designs import designs_of, problem_digest
 from inerter.app.documents import study_for, study_from
 from inerter.app.fixed_designs import with_fixed_values
-from inerter.app.kinds import RESULTS, Tell, tell_compiling
+from inerter.app.kinds import RESULTS, Tell, job_arguments
 from inerter.errors import StudyError
 from inerter.files.common.folder import REPORT
 from inerter.files.study.checking import check_study
-from inerter.files.study.parts import PartResult
 from inerter.files.study.place import Sweep
 from inerter.files.study.running import StudyResult, run_study
 from inerter.files.study.study import Study
@@ -101,28 +99,9 @@ def _as_data(result: StudyResult) -> Any:
 
 def _run_study(study: Study, folder: Path, tell: Tell) -> StudyResult:
     """Run a study as `inerter run` does, into the folder of the job."""
-
-    def show(result: StudyResult, into: Path) -> None:
-        tell(done[0], done[0], "figures and report")
-        write_figures_and_report(result, into)
-
-    def on_part_done(count: int, total: int, last: PartResult | None, n_failures: int) -> None:
-        done[0] = count
-        tell(count, total, last.name if last else "")
-
-    def preparing(count: int, total: int) -> None:
-        tell(0, 0, f"preparing {count} of {total}")
-
-    done = [0]
-    check_study(study, preparing)
-    return run_study(
-        study,
-        folder / RESULTS,
-        jobs=max((os.cpu_count() or 2) - 1, 1),
-        progress=on_part_done,
-        compiling=tell_compiling(tell),
-        finish=show,
-    )
+    check_study(study, lambda count, total: tell(0, 0, f"preparing {count} of {total}"))
+    arguments = job_arguments(tell, write_figures_and_report, lambda last: (last.name if last else "",))
+    return run_study(study, folder / RESULTS, **arguments)
 
 
 def compare(body: Body, folder: Path, tell: Tell) -> Any:

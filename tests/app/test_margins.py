@@ -183,7 +183,7 @@ def test_other_speeds_are_simulated_where_linearisation_is_not_sure() -> None:
     study = study_from(document)
     design, baseline = (study.design(name).with_values(VALUES[name]) for name in ("S3", "S1"))
     found = list(_speeds(MarginRequest(study, "S3", design, "S1", baseline, "J1", "expected-value")))
-    assert [one.factor for one in found] == [0.8, 1.2]
+    assert [(one.factor, one.short) for one in found] == [(0.8, "72 km/h (-20 %)"), (1.2, "108 km/h (+20 %)")]
     for one in found:
         index = it.RideComfort(it.Road(study.road.roughness, one.factor * 25.0))  # type: ignore[union-attr]
         two = it.compare(design, baseline, index, it.ExpectedValue(realisations=2, seed=study.seed))

@@ -175,6 +175,7 @@ def test_a_record_is_withheld_then_fitted_right_and_its_device_is_in_a_study(
     take.wait_for(timeout=120_000)
     fit = page.locator(".fit").first
     fit.get_by_text(model_words("elastic-friction")).wait_for()
+    fit.get_by_text("Reliable estimates.").wait_for()
     shown = {
         row.locator("th").inner_text(): row.locator("td").first.inner_text()
         for row in fit.locator("[aria-label='Identified values'] tbody tr").all()

@@ -278,7 +278,7 @@ function listen(store, api, showKeys) {
   addEventListener("drop", (event) => {
     if (!event.dataTransfer?.types.includes("Files")) return;
     event.preventDefault();
-    filesOf(event.dataTransfer).then((files) => open(store, api, files))
+    filesOf(store, event.dataTransfer).then((files) => open(store, api, files))
       .catch((/** @type {Error} */ { message }) => store.say(`What was dropped cannot be read: ${message}`));
   }, { signal });
   addEventListener("click", (event) => {
@@ -339,13 +339,13 @@ function nextMessage() {
   /** @type {HTMLElement | undefined} */ (next)?.focus();
 }
 
-/** The files that were dropped, and of a folder the files in it that are of use. @param {DataTransfer} transfer
- * @returns {Promise<File[]>} */
-async function filesOf(transfer) {
+/** The files that were dropped, and of a folder the files in it that are of use. @param {Store} store
+ * @param {DataTransfer} transfer @returns {Promise<File[]>} */
+async function filesOf(store, transfer) {
   const entries = [...transfer.items].map((item) => item.webkitGetAsEntry?.()).filter((entry) => entry !== null
     && entry !== undefined);
   const found = (await Promise.all(entries.map(entriesIn))).flat();
-  return found.length ? Promise.all(studiesFirst(found).map(fileOf)) : [...transfer.files];
+  return found.length ? Promise.all(studiesFirst(store, found).map(fileOf)) : [...transfer.files];
 }
 
 /** A file, or the files in a folder. @param {any} entry @returns {Promise<any[]>} */

@@ -124,7 +124,7 @@ const isRecord = (store, name) => recordSuffixes(store.get()).some((suffix) => n
 /** Opens what was dropped or chosen: study files, and measured records. @param {Store} store @param {Api} api
  * @param {Iterable<File>} files */
 export async function open(store, api, files) {
-  for (const file of studiesFirst(files)) {
+  for (const file of studiesFirst(store, files)) {
     try {
       if (isRecord(store, file.name) && !(await isSummary(file))) await openRecord(store, api, file);
       else if (/\.toml$/i.test(file.name)) await openStudyFile(store, api, file);
@@ -137,14 +137,13 @@ export async function open(store, api, files) {
   }
 }
 
-// what a result folder was made of, or what came of it
-const SOURCES = ["study.resolved.toml", "simulation.toml", "fit.json"];
-
-/** Of a result folder what it was made of, else the files themselves. @template {{name: string}} T
- * @param {Iterable<T>} files @returns {T[]} */
-export function studiesFirst(files) {
+/** Of a result folder what it was made of, or what came of it, else the files themselves. @template {{name: string}} T
+ * @param {Store} store @param {Iterable<T>} files @returns {T[]} */
+export function studiesFirst(store, files) {
   const all = [...files];
-  const source = SOURCES.map((wanted) => all.find(({ name }) => name === wanted)).find(Boolean);
+  /** @type {string[]} */
+  const sources = store.get().about?.result_sources ?? [];
+  const source = sources.map((wanted) => all.find(({ name }) => name === wanted)).find(Boolean);
   return source ? [source] : all;
 }
 

@@ -5,7 +5,7 @@ import { answerOf, questions, soughtAnswer, soughtOf } from "../src/questions.js
 import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
-import { signed } from "../src/panels/answers.js";
+import { indexAxis, indexName, indexWords, signed } from "../src/panels/answers.js";
 import { createStore } from "../src/state/store.js";
 import { keepAsking } from "../src/asking.js";
 import { partsOf } from "./reading.js";
@@ -307,4 +307,13 @@ test("a drag leaves no timers behind: one for each panel that waits until it res
 test("a percentage that rounds to nothing has no sign", () => {
   assert.deepEqual([-3e-5, 0.004, -0.006, -12.345, 7].map((each) => signed(each)),
     ["0 %", "0 %", "−0.01 %", "−12.3 %", "+7.0 %"]);
+});
+
+test("an index has its name beside its title unless that contains it, as in the report", () => {
+  const own = { symbol: "wk", title: "ride comfort" };
+  assert.deepEqual([indexName(own), indexWords(own, ": "), indexAxis(own.symbol, own.title)],
+    ["wk", "wk: ride comfort", "ride comfort wk"]);
+  const words = { symbol: "suspension-travel", title: "suspension travel" };
+  assert.deepEqual([indexName(words), indexWords(words, ": "), indexAxis(words.symbol, words.title)],
+    Array(3).fill("suspension travel"));
 });

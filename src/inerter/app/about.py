@@ -17,10 +17,13 @@ from inerter.field_metadata import Field, fields_of, mounts_of
 from inerter.files.common.free_networks import FREE_NETWORK, new_free_network
 from inerter.files.common.roads import ROAD_QUANTITIES
 from inerter.files.common.signal_kinds import SIGNALS
+from inerter.files.identification.running import FIT
 from inerter.files.identification.sections import CHOOSE, CHOOSE_WORDS
+from inerter.files.simulation.running import RESOLVED as RESOLVED_SIMULATION
 from inerter.files.study import KIND
 from inerter.files.study.chosen_design import WITHOUT_CONDITIONS
 from inerter.files.study.limits import SENSES
+from inerter.files.study.running import RESOLVED as RESOLVED_STUDY
 from inerter.formatting import capital, in_words, typeset_unit, unit_choices
 from inerter.identification.models import MODELS, model_words
 from inerter.indices.names import index_words
@@ -93,6 +96,7 @@ def about() -> dict[str, Any]:
             *({"key": name, "title": name, "words": model_words(name)} for name in MODELS),
         ],
         "record_suffixes": list(FORMATS),
+        "result_sources": [RESOLVED_STUDY, RESOLVED_SIMULATION, FIT],
         "examples": list(examples()),
     }
 

@@ -16,7 +16,14 @@ from inerter.files.study.conditions import MOST_LISTED, condition_labels
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.speeds import BESIDE, estimate_at_speed, is_at_one_speed, quick_method
 from inerter.files.study.study import Study, elements_used
-from inerter.formatting import capital, format_list, format_percent_size, format_quantity, format_share
+from inerter.formatting import (
+    capital,
+    format_decimals,
+    format_list,
+    format_percent_size,
+    format_quantity,
+    format_share,
+)
 from inerter.indices.names import title_with_name
 from inerter.methods.compare import compare_estimates
 from inerter.methods.composite_index import IndexLike
@@ -95,10 +102,11 @@ class BreakEvenMargin:
 
 @dataclass(frozen=True)
 class SpeedMargin:
-    """Improvement over the baseline at `factor` times the speed of the study [%]."""
+    """Improvement over the baseline at `factor` times the speed of the study [%]; `short` is the speed in words."""
 
     factor: float
     speed: float
+    short: str
     method: str
     improvement_percent: float | None
     improvement_error_percent: float | None  # its standard error, None if nothing is simulated
@@ -302,7 +310,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     known, short, message = isfinite(found.value), "", found.status.message
     who = f"{asked.layout} is better than {asked.baseline_layout}"
     each = _in_conditions(asked, trial, method)
-    conditions = "".join(f"; in condition {one.name} {one.text}" for one in each)
+    conditions = "".join(f"; in condition {one.name} {one.short}" for one in each)
     if found.status.kind is StatusKind.UNBOUNDED:
         message = better_clause(found.ranges, trial.brief, found.unit)
     if known:
@@ -395,7 +403,9 @@ def _speed(asked: MarginRequest, method: str, factor: float) -> SpeedMargin:
     percent, error = (None, None) if two is None else (number_or_none(-two.percent), number_or_none(two.percent_error))
     kind = StatusKind.FAILED if percent is None else StatusKind.INACCURATE if message else StatusKind.OK
     assert asked.study.road is not None
-    return SpeedMargin(factor, factor * asked.study.road.speed, method, percent, error, kind.value, message)
+    speed = factor * asked.study.road.speed
+    short = f"{format_quantity(3.6 * speed, 'km/h')} ({format_decimals(100.0 * (factor - 1.0), 0, '+')} %)"
+    return SpeedMargin(factor, speed, short, method, percent, error, kind.value, message)
 
 
 def _speed_caveats(asked: MarginRequest, speeds: Sequence[SpeedMargin]) -> Iterator[MarginCaveat]:
@@ -406,12 +416,13 @@ def _speed_caveats(asked: MarginRequest, speeds: Sequence[SpeedMargin]) -> Itera
             Severity.INFO.value,
         )
     for one in speeds:
-        at = format_quantity(3.6 * one.speed, "km/h")
         if one.message:
-            yield MarginCaveat(f"The improvement at {at} is unreliable: {one.message.rstrip('.')}.")
+            yield MarginCaveat(f"The improvement at {one.short} is unreliable: {one.message.rstrip('.')}.")
         elif one.improvement_percent is not None and one.improvement_percent < 0.0:
             worse = Improvement(one.improvement_percent).words
-            yield MarginCaveat(f"At {at} {asked.layout} is {worse} than {asked.baseline_layout} in {asked.words}.")
+            yield MarginCaveat(
+                f"At {one.short} {asked.layout} is {worse} than {asked.baseline_layout} in {asked.words}."
+            )
     _, neglected = nonlinear_elements(asked.design.mechanism(), speeds[0].method if speeds else asked.method)
     if speeds and neglected:
         yield MarginCaveat(f"Other speeds: {format_list(neglected)} neglected by {brief_words_of(speeds[0].method)}.")

@@ -160,13 +160,12 @@ export function Against({ row: { is_baseline: isBaseline, improvement_percent: v
       <div class="scatter">± ${told[1]} %</div>`}${!none && tie && html`<div class="scatter">as good</div>`}`;
 }
 
-/** A change in per cent, with its sign. @param {number | null | undefined} value @param {number} [places] */
-export function signed(value, places) {
+/** A change in per cent, with its sign. @param {number | null | undefined} value */
+export function signed(value) {
   if (typeof value !== "number") return "–";
   const size = Math.abs(value);
-  if (size < 0.005 && places === undefined) return "0 %";
-  const digits = places ?? (size < 0.1 ? 2 : size < 100 ? 1 : 0);
-  return `${value < 0 ? "−" : "+"}${size.toFixed(digits)} %`;
+  if (size < 0.005) return "0 %";
+  return `${value < 0 ? "−" : "+"}${size.toFixed(size < 0.1 ? 2 : size < 100 ? 1 : 0)} %`;
 }
 
 /** The indices that the study asks for, or those of other symbols. @param {State} state @param {string[]} [symbols]
@@ -177,18 +176,20 @@ export function indicesOf(state, symbols = indicesIn(state.history.present.study
     known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
 }
 
-/** Whether an index is named by words, which its title has too. @param {string} symbol */
-export const isWord = (symbol) => /^[a-z]+(-[a-z]+)*$/.test(symbol);
+/** Whether the title of an index contains its name, as the library sees it.
+ * @param {{symbol: string, title: string}} index */
+export const isInTitle = ({ symbol, title }) => title.includes(symbol.replaceAll("-", " "));
 
 /** An index as short as it can be named. @param {{symbol: string, title: string}} index */
-export const indexName = ({ symbol, title }) => (isWord(symbol) ? title : symbol);
+export const indexName = (index) => (isInTitle(index) ? index.title : index.symbol);
 
-/** An index in words, after its symbol if it has one. @param {{symbol: string, title: string}} index
+/** An index in words, after its name unless they contain it. @param {{symbol: string, title: string}} index
  * @param {string} between */
-export const indexWords = (index, between) => [...new Set([indexName(index), index.title])].join(between);
+export const indexWords = (index, between) =>
+  (isInTitle(index) ? index.title : `${index.symbol}${between}${index.title}`);
 
 /** An index as the title of an axis. @param {string} symbol @param {string} title */
-export const indexAxis = (symbol, title) => (isWord(symbol) ? title : `${title} ${symbol}`);
+export const indexAxis = (symbol, title) => (isInTitle({ symbol, title }) ? title : `${title} ${symbol}`);
 
 /** What a `Select` of indices has to choose from. @param {{symbol: string, title: string}[]} indices */
 export const indexChoices = (indices) => indices.map((index) => [index.symbol, indexWords(index, ": ")]);

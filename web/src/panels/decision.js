@@ -8,7 +8,7 @@ import { isBlank } from "../state/document.js";
 import { capital, quantity, takenApart } from "../state/scale.js";
 import { isBeingChosen } from "../asking.js";
 import { AskedPanel, IndexSettings, chosenFor } from "./asked.js";
-import { indexWords, indicesOf, isWord } from "./answers.js";
+import { indexWords, indicesOf, isInTitle } from "./answers.js";
 import { marginTold } from "./margins.js";
 import { problemsOf } from "./values.js";
 
@@ -80,7 +80,7 @@ function Goal({ store }) {
       <fieldset><legend>Index to be minimised</legend>
         ${indices.map(({ symbol, title }) => html`<label key=${symbol}><input type="radio" name="goal" value=${symbol}
           checked=${symbol === goal?.symbol} onChange=${() => store.look({ index: symbol })} />
-          ${title} ${!isWord(symbol) && title !== symbol && html`<b>${symbol}</b>`}</label>`)}</fieldset>
+          ${title} ${!isInTitle({ symbol, title }) && html`<b>${symbol}</b>`}</label>`)}</fieldset>
       ${indices.map(({ symbol }) => html`<${IndexSettings} key=${symbol} store=${store} index=${symbol}
         isGoal=${symbol === goal?.symbol} />`)}
       <${Select} label="Method" ...${methodChoice(store)} />

@@ -8,9 +8,8 @@ import { Moving } from "../parts/clock.js";
 import { Select, Table, formHandler } from "../parts/controls.js";
 import { isOk } from "../parts/doubts.js";
 import { html } from "../parts/html.js";
-import { shown } from "../state/scale.js";
 import { begin, ended } from "../working.js";
-import { Against, indicesOf, signed } from "./answers.js";
+import { Against, indicesOf } from "./answers.js";
 import { JobHead, RUNNING } from "./work.js";
 
 /** @import { Store, Job } from "../state/store.js" */
@@ -80,9 +79,9 @@ function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats
     ${told(caveats.filter((/** @type {any} */ one) => !doubts.includes(one)))}
     ${rows.map((/** @type {any} */ { parameter, sentence, message, status }) => html`<p key=${parameter}
       class=${isOk(status) || status === "unbounded" ? "" : "problem"}>${sentence || message}</p>`)}
-    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["Speed [km/h]", "gain on the baseline"]}>
-      ${speeds.map((/** @type {any} */ { factor, speed, status, ...one }) => html`<tr key=${factor}>
-        <th scope="row">${shown(3.6 * speed, 4)} (${signed(100 * (factor - 1), 0)})</th>
+    ${speeds.length > 0 && html`<${Table} label="Other speeds" heads=${["Speed", "gain on the baseline"]}>
+      ${speeds.map((/** @type {any} */ { factor, short, status, ...one }) => html`<tr key=${factor}>
+        <th scope="row">${short}</th>
         <td class="number"><${Against} row=${{ ...one, status, improvement_status: status }} /></td></tr>`)}<//>`}
     ${scatter?.sentence && html`<p>${scatter.sentence}</p>`}</div>`;
 }

@@ -137,7 +137,7 @@ function RunResult({ store, api, job }) {
     unitFor(about, rows.filter((row) => row.index === index).map(({ value }) => value), unit);
   const many = 60;
   return html`<${Doubts} members=${rows.flatMap(membersOf)} />
-  <${Table} label="Results" heads=${["layout", "index", "method", "value", "gain on the baseline", ""]}>
+  <${Table} label="Results" class="results" heads=${["layout", "index", "method", "value", "gain on the baseline", ""]}>
     ${rows.slice(0, many).map((row, i) => html`<tr key=${i}>
       <td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td>
       <td class="number">${!isOk(row.status) && html`<div class="doubt">${String(row.status).split(": ")[0]}</div>`}

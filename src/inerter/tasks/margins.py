@@ -310,7 +310,7 @@ def _break_even_by(asked: MarginRequest, trial: _Trial, method: str) -> BreakEve
     known, short, message = isfinite(found.value), "", found.status.message
     who = f"{asked.layout} is better than {asked.baseline_layout}"
     each = _in_conditions(asked, trial, method)
-    conditions = "".join(f"; in condition {one.name} {one.short}" for one in each)
+    conditions = "".join(f"; in condition {one.name} {one.text}" for one in each)
     if found.status.kind is StatusKind.UNBOUNDED:
         message = better_clause(found.ranges, trial.brief, found.unit)
     if known:

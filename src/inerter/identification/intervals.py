@@ -202,9 +202,8 @@ def _profile_side(
     for _ in range(_SEARCHING):
         cost, point = constrained_optimum(problem, optimum, i, start + sign * away)
         if optimum.point.size > 1 and cost - optimum.cost > threshold * max(_BENT * away / reach, 0.9) ** 2:
-            cost, point = min(
-                (cost, point), _follow_profile(problem, optimum, near, i, start + sign * away), key=_cost_of
-            )
+            other = _follow_profile(problem, optimum, near, i, start + sign * away)
+            cost, point = other if other[0] < cost else (cost, point)
         root = float(np.sign(cost - optimum.cost) * np.sqrt(abs(cost - optimum.cost) / threshold))
         points.append((start + sign * away, max(root, 0.0) ** 2))
         if root < -0.3:
@@ -237,10 +236,6 @@ def _follow_profile(problem: FitProblem, optimum: BestFit, near: Matrix, i: int,
         point[others] -= np.linalg.lstsq(J[:, others], J[:, i], rcond=1e-6)[0] * (value - near[i])
     found = fit_by_secants(problem, np.clip(point, lower, upper), J, _RETURNING, _RETURNED, held=i)
     return found.cost, found.point
-
-
-def _cost_of(found: tuple[float, Matrix]) -> float:
-    return found[0]
 
 
 def _stiffness(optimum: BestFit, i: int) -> float:

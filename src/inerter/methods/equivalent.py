@@ -10,7 +10,7 @@ friction sticks and c is infinite.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -43,6 +43,7 @@ from inerter.systems.structure import once_per_structure
 from inerter.vehicle.mechanism import Mechanism, Strut, Tyre
 
 Array = NDArray[np.float64]
+Roles = Collection[LinearRole]
 PROMISE = 0.03  # relative error of a value that is ok, what stands in for its excitation apart
 POORLY = "is poorly represented by one damper: the error may exceed 3 %"
 STIFFEST = 1e6  # dampers beyond so many times a typical one stand for rigid links too
@@ -59,7 +60,7 @@ class Equivalent:
     locked: tuple[str, ...]  # in words, those replaced by a rigid link instead
     forces: tuple[Value, ...]  # of each friction [N], or the free value that has this one, ...
     gains: tuple[float, ...]  # ... times its gain
-    springy: tuple[bool, ...]  # which are in series with a spring: see `_behind_springs`
+    springy: tuple[bool, ...]  # which are in series with a spring: see `_is_behind_spring`
     undamped: tuple[bool, ...]  # which are in series with springs alone, and with no damper
     design: tuple[str, ...]  # free values of the mechanism that it stands for
     scale: float  # a damping typical of the mechanism [N s/m]
@@ -166,8 +167,10 @@ def equivalent(mechanism: Mechanism, without: Collection[str] = (), locked: Coll
     moving = _linear_labels(other)
     names = tuple(name for name in found if name in moving)
     frictions = [found[name][1] for name in names]
-    springy = {id(element) for mount in mechanism.mounts() for element in _behind_springs(mount.network)}
-    undamped = {id(element) for mount in mechanism.mounts() for element in _on_springs_alone(mount.network)}
+    springy, undamped = (
+        {id(element) for mount in mechanism.mounts() for element in _in_series(mount.network, is_wanted)}
+        for is_wanted in (_is_behind_spring, _is_on_springs_alone)
+    )
     return Equivalent(
         mechanism=other,
         dampers=names,
@@ -189,34 +192,31 @@ def _linear_labels(mechanism: Mechanism) -> frozenset[str]:
     return frozenset(branch.label for branch in linear_graph(mechanism).branches)
 
 
-def _behind_springs(network: Network) -> Iterator[Element]:
-    """Elements of parts without inerters that are in series with a spring.
+def _is_behind_spring(roles: Roles, others: Roles) -> bool:
+    """Whether a part is without inerters and in series with a spring.
 
     A friction there sticks while the spring moves (a Jenkins element), for as long as a slow force takes to reach it;
     the force through an inerter changes at once.
     """
+    return LinearRole.STIFFNESS in others and LinearRole.MASS not in roles
+
+
+def _is_on_springs_alone(roles: Roles, others: Roles) -> bool:
+    """Whether nothing but springs is in series with a part: such a spring rings after each reversal."""
+    return others == {LinearRole.STIFFNESS}
+
+
+def _in_series(network: Network, is_wanted: Callable[[Roles, Roles], bool]) -> Iterator[Element]:
+    """Elements of parts that are in series with others, wanted by the roles in the part and in the others."""
     if not isinstance(network, CombinedNetwork):
         return
     roles = [{element.linear for element in part.elements()} for part in network.parts]
     for i, part in enumerate(network.parts):
         others = set().union(*(own for j, own in enumerate(roles) if j != i))
-        if isinstance(network, Series) and LinearRole.STIFFNESS in others and LinearRole.MASS not in roles[i]:
+        if isinstance(network, Series) and is_wanted(roles[i], others):
             yield from part.elements()
         else:
-            yield from _behind_springs(part)
-
-
-def _on_springs_alone(network: Network) -> Iterator[Element]:
-    """Elements of parts that nothing but springs is in series with: such a spring rings after each reversal."""
-    if not isinstance(network, CombinedNetwork):
-        return
-    roles = [{element.linear for element in part.elements()} for part in network.parts]
-    for i, part in enumerate(network.parts):
-        others = set().union(*(own for j, own in enumerate(roles) if j != i))
-        if isinstance(network, Series) and others == {LinearRole.STIFFNESS}:
-            yield from part.elements()
-        else:
-            yield from _on_springs_alone(part)
+            yield from _in_series(part, is_wanted)
 
 
 def slipping_freely(mechanism: Mechanism, definition: IndexDefinition) -> frozenset[str]:

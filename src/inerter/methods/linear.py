@@ -243,11 +243,14 @@ def linear_problem(mechanism: Mechanism, definition: IndexDefinition, convention
 
     Raises `PerformanceIndexError` for a peak gain of anything but one output of one input.
     """
-    return _linear_problem(definition.excite(mechanism), conventions, lambda *asked: (describe(*asked), {}))[0]
+    excited = definition.excite(mechanism)
+    return linear_problem_of_design(excited, conventions, lambda *asked: (describe(*asked), {}))[0]
 
 
 def linear_problem_of_design(
-    index: ExcitedIndex, conventions: Conventions
+    index: ExcitedIndex,
+    conventions: Conventions,
+    describe_mechanism: Callable[..., tuple[Descriptor, Mapping[str, float]]] = describe_design,
 ) -> tuple[LinearProblem, Mapping[str, float]]:
     """Linear problem of all designs of the structure of a design without free values, and its values there.
 
@@ -255,14 +258,6 @@ def linear_problem_of_design(
 
     Raises `PerformanceIndexError` as `linear_problem`.
     """
-    return _linear_problem(index, conventions, describe_design)
-
-
-def _linear_problem(
-    index: ExcitedIndex,
-    conventions: Conventions,
-    describe_mechanism: Callable[..., tuple[Descriptor, Mapping[str, float]]],
-) -> tuple[LinearProblem, Mapping[str, float]]:
     check_peak_gain(index.definition)
     asked, paths = with_convention_filters(conventions, index.mechanism, index.definition), index.paths
     outputs = [output.output for output in asked.outputs]

@@ -187,7 +187,9 @@ def _search_compiled(plan: SearchPlan, topology: Topology) -> SearchedNetwork:
     if over is None:  # for an index that is infinite, or zero, whatever the values
         return _search_by_optimise(plan, topology)
     found = over.search(quasi_random_points(starts * TRIED, topology.size, plan.seed))
-    if plan.starts is None and np.isfinite(found.values.min()) and _count_equal(found.values) * _SELDOM < starts:
+    lowest = found.values.min()
+    equal = int(np.sum(found.values <= lowest * (1.0 + AGREEMENT)))
+    if plan.starts is None and np.isfinite(lowest) and equal * _SELDOM < starts:
         starts *= _MORE
         found = over.search(quasi_random_points(starts * TRIED, topology.size, plan.seed))
     values, points = found.values, found.points
@@ -209,10 +211,6 @@ def _infinite_reason(topology: Topology, status: Status) -> str:
     undamped = "" if topology.counts["c"] else ", which has no damper"
     detail = f"{status.message} at the middle of the bounds" if status.message else "at the middle of the bounds too"
     return f"infinite at all starts of this network{undamped}: {detail}"
-
-
-def _count_equal(values: Array) -> int:
-    return int(np.sum(values <= values.min() * (1.0 + AGREEMENT)))
 
 
 def _first_confirmed(plan: SearchPlan, topology: Topology, values: Array, points: Array) -> int | None:

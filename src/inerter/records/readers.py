@@ -204,7 +204,10 @@ def _with_times(
     if contents.meta.get("cut"):
         shortest = min(samples.values.size for samples in channels.values())
         notes.append(f"The file is truncated: the first {shortest} samples are complete and were kept.")
-        channels = {role: _first(samples, shortest) for role, samples in channels.items()}
+        channels = {
+            role: Samples(samples.values[:shortest], None if samples.time is None else samples.time[:shortest])
+            for role, samples in channels.items()
+        }
     rasters = {role: samples.time for role, samples in channels.items()}
     timed = "time" not in channels and interval is None
     if timed and any(time is None for time in rasters.values()):
@@ -230,7 +233,3 @@ def _with_times(
         time = rasters["force"]
         channels = {"time": Samples(np.array(time)), **channels} if time is not None else channels
     return channels, notes
-
-
-def _first(samples: Samples, count: int) -> Samples:
-    return Samples(samples.values[:count], None if samples.time is None else samples.time[:count])

@@ -145,7 +145,11 @@ def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
     cut = _total_width(grid.columns, cut_headings=True) <= width < _total_width(grid.columns, cut_headings=False)
     widths = [column.width(cut) for column in grid.columns if not column.wraps]
     rest = max(width - len(_GAP) * (len(widths) + 1) - sum(widths), _NARROWEST)
-    headings = [_heading_lines(c, rest if c.wraps else c.width(cut)) for c in grid.columns]
+    spaces = [rest if c.wraps else c.width(cut) for c in grid.columns]
+    headings = [
+        wrap(c.heading, space, break_long_words=False, break_on_hyphens=False) or [""]
+        for c, space in zip(grid.columns, spaces, strict=True)
+    ]
     yield from _side_by_side(headings, widths)
     for i, row in enumerate(grid.rows):
         cells = [_pack_items(c.items[i], rest) if c.wraps else [t for t in c.cells[i] if t] for c in grid.columns]
@@ -156,10 +160,6 @@ def _lines(grid: _Grid, labels: Sequence[str], width: int) -> Iterator[str]:
             yield from wrap(row.status, width, initial_indent=f"{_GAP * 2}! ", subsequent_indent=_GAP * 3)
         if row.remark:
             yield from wrap(row.remark, width, initial_indent=_GAP * 3, subsequent_indent=_GAP * 3)
-
-
-def _heading_lines(column: _TextColumn, width: int) -> list[str]:
-    return wrap(column.heading, width, break_long_words=False, break_on_hyphens=False) or [""]
 
 
 def _ascii(text: str) -> str:

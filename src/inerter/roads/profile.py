@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -116,7 +115,9 @@ class Profile:
         velocity = positive_number("The speed over a profile", speed, "m/s")
         if side not in self.tracks:
             which = f"no {side!r} track" if side else "two tracks"
-            raise SignalError(f"{self.source!r} has {which}: {_available_tracks(self.tracks)}.")
+            single = "it has a single track without a name"
+            known = single if "" in self.tracks else 'select one with track = "left" or "right"'
+            raise SignalError(f"{self.source!r} has {which}: {known}.")
         label = " ".join(filter(None, ("profile", self.source, side)))
         return Signal.sampled(
             (self.distance - self.distance[0]) / velocity, self.tracks[side], speed=velocity, label=label
@@ -131,7 +132,3 @@ class Profile:
         """
         found = {side: self.to_signal(speed, side) for side in self.tracks}
         return found.get("", found)
-
-
-def _available_tracks(tracks: Mapping[str, Matrix]) -> str:
-    return "it has a single track without a name" if "" in tracks else 'select one with track = "left" or "right"'

@@ -102,7 +102,8 @@ class Immittance:
 
     def has_pole_at(self, x: Decimal) -> bool:
         """Whether there are poles at the roots of s^2 + x."""
-        return _vanishes(self.bottom, x, self.tiny)
+        tiny = self.tiny.sqrt()
+        return _is_tiny(self.bottom[0::2], -x, tiny) and _is_tiny(self.bottom[1::2], -x, tiny)
 
     def at(self, x: Decimal) -> tuple[Decimal, Decimal]:
         """Real part and, over w, imaginary part of the value at s = j w, where x = w^2."""
@@ -248,10 +249,6 @@ def _to_integers(p: Numbers) -> Polynomial:
 def _parts(p: Numbers, x: Decimal) -> tuple[Decimal, Decimal]:
     """p(j w) = even + j w odd, where x = w^2."""
     return evaluate(p[0::2], -x), evaluate(p[1::2], -x)
-
-
-def _vanishes(p: Numbers, x: Decimal, tiny: Decimal) -> bool:
-    return _is_tiny(p[0::2], -x, tiny.sqrt()) and _is_tiny(p[1::2], -x, tiny.sqrt())
 
 
 def _is_tiny(p: Sequence[Decimal], x: Decimal, tiny: Decimal) -> bool:

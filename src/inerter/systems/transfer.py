@@ -24,7 +24,7 @@ from inerter.systems.incidence import Matrix, ports
 from inerter.systems.lever_arms import BranchRows
 from inerter.systems.outputs import Output, force_of
 from inerter.systems.polynomials import Polynomial, TransferFunctions, interpolate_integers, scale_by
-from inerter.vehicle.mechanism import Coordinate, Mechanism
+from inerter.vehicle.mechanism import Mechanism
 
 Row = dict[int, int]
 Rows = tuple[Row, Row]  # over nodes and over roads
@@ -139,7 +139,7 @@ class _Nodal:
         whole = _whole_rows(graph, tuple(asked), len(self.roads), self.names, ports(mechanism, graph).tobytes())
         self.lever_unit, self.outputs, self.forces = whole.lever_unit, whole.outputs, whole.forces
         numbers = [_coefficient(b.element, values) for b in graph.branches]
-        masses = [_mass(coordinate, values) for coordinate in mechanism.coordinates]
+        masses = [0.0 if c.is_massless else _coefficient(c.element, values) for c in mechanism.coordinates]
         self.value_bits = max([*map(_bits, numbers), *map(_bits, masses)], default=0)
         self.masses = [_times(mass, self.value_bits) * self.lever_unit**2 for mass in masses]
         self.branches = [
@@ -248,10 +248,6 @@ def _coefficient(element: Element, values: Mapping[str, float]) -> float | Fract
     assert not isinstance(value, Tied)
     number = values[str(value.name)] if isinstance(value, Free) else value
     return number if element.gain == 1.0 else Fraction(number) * Fraction(element.gain)
-
-
-def _mass(coordinate: Coordinate, values: Mapping[str, float]) -> float | Fraction:
-    return 0.0 if coordinate.is_massless else _coefficient(coordinate.element, values)
 
 
 def _bits(value: float | Fraction) -> int:

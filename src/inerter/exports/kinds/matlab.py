@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import ExportError
 from inerter.exports.kind import LINEAR_MODEL, ExportKind
-from inerter.exports.named_system import NamedQuantity, NamedSystem
+from inerter.exports.named_system import NamedSystem
 from inerter.exports.request import ExportSpec
 from inerter.records.writers import write_record_matlab
 
@@ -35,7 +35,7 @@ def matlab_file(system: NamedSystem) -> bytes:
     data: dict[str, object] = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
     if system.E is not None:
         data["E"] = system.E
-    for what, several in _signals(system).items():
+    for what, several in (("state", system.states), ("input", system.inputs), ("output", system.outputs)):
         data[f"{what}_names"] = _cells([one.name for one in several])
         data[f"{what}_units"] = _cells([one.unit for one in several])
     data |= {"notes": _cells(system.notes), "title": system.title}
@@ -61,10 +61,6 @@ def matlab_script(system: NamedSystem) -> str:
     units = {"StateUnit": system.states, "InputUnit": system.inputs, "OutputUnit": system.outputs}
     lines += [f"    sys.{key} = {_cell_text([one.unit for one in several])};" for key, several in units.items()]
     return "\n".join([*lines, "end", ""])
-
-
-def _signals(system: NamedSystem) -> dict[str, tuple[NamedQuantity, ...]]:
-    return {"state": system.states, "input": system.inputs, "output": system.outputs}
 
 
 def _cells(texts: Sequence[str]) -> NDArray[np.object_]:

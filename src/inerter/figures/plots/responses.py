@@ -53,7 +53,8 @@ def response_curves(designs: Designs, response: Response, frequency: ArrayLike |
             )
         for row, (output, weight) in enumerate(outputs.items()):
             several = {"label": f"{look['label']} {in_words(output)}".strip()} if len(outputs) > 1 else {}
-            yield ResponseCurve(hertz, weight * values[:, row, 0], {**look, **several, **_fainter(row)}, what, unit)
+            fainter = {"alpha": 1.0 / (1 + row)} if row else {}
+            yield ResponseCurve(hertz, weight * values[:, row, 0], {**look, **several, **fainter}, what, unit)
 
 
 def _system(
@@ -95,7 +96,3 @@ def check_frequencies(frequency: ArrayLike) -> Array:
     if found is None or found.ndim > 1 or not found.size or not np.all(np.isfinite(found) & (found > 0.0)):
         raise LinearSystemError(f"Frequencies of a plot are a list of positive numbers of Hz, got {frequency!r}.")
     return np.atleast_1d(found)
-
-
-def _fainter(row: int) -> dict[str, Any]:
-    return {"alpha": 1.0 / (1 + row)} if row else {}

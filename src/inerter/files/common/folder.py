@@ -262,11 +262,9 @@ def _is_mark(folder: Path) -> bool:
     mark = folder / MARK
     if not os.path.lexists(mark):
         return True
-    return _is_folder(folder, MARK) and (listing(folder) is not None or not _strange(mark))
-
-
-def _strange(mark: Path) -> list[str]:
-    return [name for name in os.listdir(mark) if name != "lock" and not name.startswith(".inerter-")]
+    if not _is_folder(folder, MARK):
+        return False
+    return listing(folder) is not None or all(one == "lock" or one.startswith(".inerter-") for one in os.listdir(mark))
 
 
 def _complete(folder: Path) -> None:

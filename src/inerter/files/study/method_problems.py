@@ -55,7 +55,8 @@ def _index_problems(study: Study) -> Iterator[Problem]:
     """Problems of index settings that no index in `indices` uses."""
     for key in study.settings:
         is_amplitude = any(isinstance(own := amplitude_of(symbol), Field) and own.key == key for symbol in INDICES)
-        field, owners = index_settings()[key], [symbol for symbol in INDICES if key in _keys(symbol)]
+        field = index_settings()[key]
+        owners = [symbol for symbol, kind in INDICES.items() if key in {own.key for own in fields_of(kind)}]
         asked = set(owners) & set(map(study.symbol, study.indices))
         what, there = f"the {field.in_words} of {_either(owners, str)}", _either(owners)
         if is_amplitude and not (asked and any(map(needs_amplitude, study.methods))):
@@ -82,10 +83,6 @@ def _own_problems(study: Study) -> Iterator[Problem]:
         for field in missing_settings(name, study.method_settings.get(name, {})):
             example = f'{field.key} = "{field.example}"'
             yield at(("methods", name, field.key), fault="missing", expected=example, hint=field.sentence)
-
-
-def _keys(symbol: str) -> set[str]:
-    return {field.key for field in fields_of(INDICES[symbol])}
 
 
 def _force_problems(study: Study) -> Iterator[Problem]:

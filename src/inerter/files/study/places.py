@@ -89,10 +89,6 @@ def _elements(found: Mapping[str, Any]) -> dict[str, Any]:
     return {"elements": {n: e for n, e in found.items() if n not in networks}, "free_networks": networks}
 
 
-def _methods_in(study: Study) -> dict[str, dict[str, float]]:
-    return {**{name: {} for name in study.methods}, **study.method_settings}
-
-
 _SECTIONS = {
     "vehicle": _Section(lambda study: study.vehicle, lambda study, found: {"vehicle": found}),
     "road": _Section(lambda study: study.road and road_values(study.road, study.coherence), _of_road),
@@ -100,6 +96,7 @@ _SECTIONS = {
     "indices": _Section(lambda study: study.own_indices, lambda study, found: {"own_indices": found}),
     "study": _Section(lambda study: study, lambda study, found: found),
     "methods": _Section(
-        _methods_in, lambda study, found: {"method_settings": {name: table for name, table in found.items() if table}}
+        lambda study: {**{name: {} for name in study.methods}, **study.method_settings},
+        lambda study, found: {"method_settings": {name: table for name, table in found.items() if table}},
     ),
 }

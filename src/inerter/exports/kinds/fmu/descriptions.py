@@ -9,7 +9,6 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from inerter.exports.kinds.fmu.equations import FmuParameter
 from inerter.exports.kinds.fmu.switching import SwitchingSystem
 from inerter.exports.named_system import NamedQuantity
 
@@ -134,13 +133,8 @@ def _variables(switches: SwitchingSystem, orders: int) -> Iterator[Variable]:
         yield Variable(quantity, "output", "continuous", description=text)
     for parameter in switches.parameters:
         quantity = NamedQuantity(parameter.name, parameter.unit)
-        yield Variable(
-            quantity, "parameter", _variability(parameter), parameter.value, description=parameter.description
-        )
-
-
-def _variability(parameter: FmuParameter) -> str:
-    return "tunable" if parameter.is_tunable else "fixed"
+        variability = "tunable" if parameter.is_tunable else "fixed"
+        yield Variable(quantity, "parameter", variability, parameter.value, description=parameter.description)
 
 
 def _acts_at_once(switches: SwitchingSystem, output: int) -> Iterator[str]:

@@ -15,6 +15,7 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     TaskID,
     TaskProgressColumn,
     TextColumn,
@@ -122,10 +123,17 @@ def _in_lines(study: _Study) -> Iterator[ProgressCallbacks]:
 
 
 @contextmanager
+def _bar(*columns: ProgressColumn) -> Iterator[Progress]:
+    """A bar with its description and these columns, removed at the end."""
+    first = TextColumn("{task.description}"), BarColumn()
+    with display(), Progress(*first, *columns, console=Console(stderr=True), transient=True) as bar:
+        yield bar
+
+
+@contextmanager
 def _on_terminal(study: _Study) -> Iterator[ProgressCallbacks]:
     """A bar, which moves."""
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with _bar(MofNCompleteColumn(), TimeElapsedColumn()) as bar:
         task = bar.add_task("preparing", total=None)
 
         def update(step: ProgressStep) -> None:
@@ -151,8 +159,7 @@ def steps() -> Iterator[Callable[[str, int, int], None]]:
             parts.printer = printer
             yield parts
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with _bar(MofNCompleteColumn(), TimeElapsedColumn()) as bar:
         rows: dict[str, TaskID] = {}
 
         def show(part: str, done: int, total: int) -> None:
@@ -199,8 +206,7 @@ def fraction(what: str) -> Iterator[Callable[[float], None]]:
         with pulse(words):
             yield lambda done: part.__setitem__(0, done)
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with display(), Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+    with _bar(TaskProgressColumn(), TimeRemainingColumn()) as bar:
         task = bar.add_task(what, total=1.0)
 
         def show(step: ProgressStep) -> None:

@@ -193,7 +193,7 @@ function Card({ about, entry, fronts, indices, baseline, take }) {
     ${point.network && html`<p><code>${point.network}</code></p>`}
     ${!isOk(point.status) && html`<p class="problem"><b>Unreliable.</b> ${point.status}</p>`}
     <${Table} label="Indices of the point" heads=${["index", "here", ...(other ? [reference.name] : []),
-        ...(improvements ? [[`against ${baseline}`, `the lowest value of ${baseline}`]] : [])]}>
+        ...(improvements ? [[`gain on ${baseline}`, `on the lowest value of ${baseline}`]] : [])]}>
       ${indices.map((each) => html`<tr key=${each.index}>
         <th scope="row" title=${each.title}>${each.index}</th>
         <td class="number" data-value=${point.values[each.index]}>${told(point, each)}

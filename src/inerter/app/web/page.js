@@ -212,7 +212,7 @@ ${new XMLSerializer().serializeToString(n)}
     <h4>${i.layout}, point ${l} of ${i.points.length}${c?", the knee":""}</h4>
     ${a.network&&h`<p><code>${a.network}</code></p>`}
     ${!q(a.status)&&h`<p class="problem"><b>Unreliable.</b> ${a.status}</p>`}
-    <${nt} label="Indices of the point" heads=${["index","here",...f?[p.name]:[],...u?[[`against ${s}`,`the lowest value of ${s}`]]:[]]}>
+    <${nt} label="Indices of the point" heads=${["index","here",...f?[p.name]:[],...u?[[`gain on ${s}`,`on the lowest value of ${s}`]]:[]]}>
       ${o.map(d=>h`<tr key=${d.index}>
         <th scope="row" title=${d.title}>${d.index}</th>
         <td class="number" data-value=${a.values[d.index]}>${nr(a,d)}

@@ -48,26 +48,24 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
         length = h
         if knots.special[place.special] == k:
             length = _length_of(knots, k, h)
-        if place.mode < 0:
-            code = _find_first_mode(run, knots, record, length)
-            if code != DONE:
-                return code
-        knot_numbers(knots.value, knots.slope, knots.value_before, knots.slope_before, k, length, numbers)
-        if k != refused and not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
-            m = place.mode
-            lines = MarchLines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
-            span = Span(h, m, k, min(stop, knots.special[place.special]), place.settled)
-            refused = whole_steps(march, lines, knots, record, span)
-            place.segment = refused
-            if place.segment > k:
-                continue
-        code = _cross_knot(run, knots, record, account, length)
-        if code != DONE:
-            return code
+        if place.mode < 0:  # what jumps at the first knot jumps in a mode
+            before, slope_before = knots.value_before, knots.slope_before
+            knot_numbers(before, slope_before, before, slope_before, k, length, numbers)
+        else:
+            knot_numbers(knots.value, knots.slope, knots.value_before, knots.slope_before, k, length, numbers)
+            if k != refused and not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
+                m = place.mode
+                lines = MarchLines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
+                span = Span(h, m, k, min(stop, knots.special[place.special]), place.settled)
+                refused = whole_steps(march, lines, knots, record, span)
+                place.segment = refused
+                if place.segment > k:
+                    continue
+            if place.jumped == BEFORE:
+                place.jumped = BROKEN if _apply_jump(run, knots, account) else SMOOTH
         code = _integrate_segment(run, knots, record, account, length)
         if code != DONE:
             return code
-        _finish_segment(run, knots, record, length)
     return DONE
 
 
@@ -79,41 +77,25 @@ def _length_of(knots: Knots, k: int, h: float) -> float:
 
 
 @part(borrowing=True, inside=True)
-def _find_first_mode(run: Run, knots: Knots, record: History, length: float) -> int:
-    """Find the first mode: what jumps at the first knot jumps in a mode."""
-    k = run.motion.place[0].segment
-    before, slope_before = knots.value_before, knots.slope_before
-    knot_numbers(before, slope_before, before, slope_before, k, length, run.room.numbers)
-    code = switch(run, record.events, knots.time[k], length, NONE)
-    if code == DONE:
-        _record_sample(run, record, knots.slot[k])
-    return code
-
-
-@part(borrowing=True, inside=True)
-def _cross_knot(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
-    """Cross a knot: where inputs jump or turn, the mode may change, and the values after the knot are recorded."""
-    place, k = run.motion.place[0], run.motion.place[0].segment
-    if place.jumped == BEFORE:
-        place.jumped = BROKEN if _apply_jump(run, knots, account) else SMOOTH
-    if place.jumped == BROKEN:
-        code = switch(run, record.events, knots.time[k], length, NONE)
-        if code != DONE:
-            return code
-        place.jumped = SMOOTH
-        _record_break(run, knots, record, length)
-    return DONE
-
-
-@part(borrowing=True, inside=True)
 def _integrate_segment(run: Run, knots: Knots, record: History, account: Account, length: float) -> int:
-    """Integrate to the end of one segment piece by piece, with every event in between.
+    """Integrate to the end of one segment piece by piece, with every event in between; or find the first mode.
 
-    What changes at once at its start changes the mode of the sample there, if there is one.
+    Modes are switched in one place, since the code for it is long: in the first mode, where inputs jump or turn at the
+    knot, and at events.
     """
     place, sizes, room, modes = run.motion.place[0], run.mechanics.sizes, run.room, run.modes
-    start, slot, pauses = knots.time[place.segment], knots.slot[place.segment], 0
-    while place.clock < length:
+    k, pauses, who = place.segment, 0, NONE
+    switches = place.mode < 0 or place.jumped == BROKEN
+    while switches or place.clock < length:
+        if switches:
+            is_first = place.mode < 0
+            code = switch(run, record.events, knots.time[k], length, who)
+            if code != DONE:
+                return code
+            if is_first:
+                _record_sample(run, record, knots.slot[k])
+                return DONE
+            _record_switch(run, knots, record, length)
         m, t = place.mode, place.clock
         if length > PIECES * modes.reach[m]:
             return STIFF
@@ -130,16 +112,25 @@ def _integrate_segment(run: Run, knots: Knots, record: History, account: Account
             return NOT_FINITE
         place.clock = length if who < 0 and d == length - t else t + s * d
         pauses = 0 if place.clock > t else pauses + 1
-        if who >= 0:
+        switches = who >= 0
+        if switches:
             place.switches += 1
             if pauses > _PAUSES or place.switches > _SWITCHES:
                 return CHATTER
-            code = switch(run, record.events, start, length, who)
-            if code != DONE:
-                return code
-            if place.clock == 0.0 and slot >= 0 and slot < record.visited.shape[0]:
-                record.visited[slot] = place.mode
+    _finish_segment(run, knots, record, length)
     return DONE
+
+
+@part(borrowing=True, inside=True)
+def _record_switch(run: Run, knots: Knots, record: History, length: float) -> None:
+    """Record what a switch at the knot changes: the mode of the sample there, and the values after a break."""
+    place = run.motion.place[0]
+    slot = knots.slot[place.segment]
+    if place.jumped == BROKEN:
+        place.jumped = SMOOTH
+        _record_break(run, knots, record, length)
+    elif place.clock == 0.0 and slot >= 0 and slot < record.visited.shape[0]:
+        record.visited[slot] = place.mode
 
 
 @part(borrowing=True, inside=True)

@@ -366,7 +366,7 @@ def march_with_sizes(march: March, lines: MarchLines, knots: Knots, record: Hist
     return march_steps(lines, knots, record, span, march.shape, march.numbers)
 
 
-@part(borrowing=True, plain=march_with_sizes)
+@part(borrowing=True, inside=True, plain=march_with_sizes)
 def whole_steps(march: March, lines: MarchLines, knots: Knots, record: History, span: Span) -> int:
     """Whole steps by the `march_steps` compiled for this shape, if it is compiled.
 

@@ -19,7 +19,7 @@ _EPS = 2.2e-16  # the last digit of a number, relative to it
 _LARGEST_ZERO = 1e-7  # relative to the largest state so far
 
 
-@part(borrowing=True)
+@part(borrowing=True, inside=True)
 def switch(run: Run, events: Array, start: float, length: float, who: int) -> int:
     """Find and enter the mode that continues the motion, after the guard of element `who` (or nothing, -1) was met.
 
@@ -50,27 +50,23 @@ def _search_modes(run: Run, length: float, who: int) -> int:
     """
     place, watch, elements = run.motion.place[0], run.motion.watch, run.mechanics.sizes.elements
     _first_trial(run, who)
-    verdict, m = 0, NONE
-    for _ in range(20 + 8 * elements):
+    tries, code, struck = 20 + 8 * elements, 0, False
+    while code < 3 ** min(elements, 6):
+        if tries == 0:
+            code += 1
+            if not _nth_trial(run, code - 1):
+                continue
         m = _number_on_trial(run)
         if m < 0:
             return _request_mode(run)
         verdict = check_contact_state(run, m, length, who)
-        if verdict < 0:
-            break
-        watch[verdict].trial = place.wanted
-    code, struck = 0, False
-    while verdict != ACCEPTED and code < 3 ** min(elements, 6):
+        if verdict == ACCEPTED:
+            return DONE
         struck = struck or verdict == STRUCK
-        possible = _nth_trial(run, code)
-        code += 1
-        if possible:
-            m = _number_on_trial(run)
-            if m < 0:
-                return _request_mode(run)
-            verdict = check_contact_state(run, m, length, who)
-    if verdict == ACCEPTED:
-        return DONE
+        if tries > 0:
+            tries = tries - 1 if verdict >= 0 else 0
+            if verdict >= 0:
+                watch[verdict].trial = place.wanted
     return IMPACT if struck else NO_MODE
 
 
@@ -161,7 +157,7 @@ def _is_at_rest(run: Run) -> bool:
     return bool(fastest * run.modes.reach[motion.place[0].mode] <= _EPS * farthest)
 
 
-@part(borrowing=True)
+@part(borrowing=True, inside=True)
 def check_contact_state(run: Run, m: int, length: float, who: int) -> int:
     """Verdict on mode m in the present state: ACCEPTED, STRUCK, STRANDED, or the element whose state must change.
 

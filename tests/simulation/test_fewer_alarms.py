@@ -5,7 +5,7 @@ import pytest
 
 import inerter as it
 from inerter.kernels import flow
-from inerter.kernels.flow import first_root, inputs_from, series, value_at
+from inerter.kernels.flow import first_root, inputs_from, orders_in, series, value_at
 from inerter.kernels.integrate import fill_sharp_sways, fill_sways, path_in, room_of
 from inerter.simulation import event_driven
 from inerter.simulation.inputs import tabulate
@@ -47,12 +47,17 @@ def test_a_guard_stays_within_its_ends_and_the_closest_bound_of_its_sway(strut):
             close, wide = np.zeros((2, sizes.elements))
             fill_sharp_sways(run.modes.steps[m], path, 0, shape, close)
             fill_sways(run.modes.steps[m], path, 0, 1, shape, wide)
-            U, X = np.zeros((4, nu)), np.zeros((32, n))
+            U, X = np.zeros((4, nu)), np.zeros_like(run.room.series)
             inputs_from(numbers, nr, nu, h, 0.0, h, U)
-            count = series(maps, state, U, n, nu, h, X)
+            count = series(run.modes.steps[m], state, U, n, nu, h, X)
             rows = maps[run.guards]
-            terms = X[:count] @ rows[:, :n].T
+            terms = X[:count, :n] @ rows[:, :n].T
             terms[:4] += U @ rows[:, n : n + nu].T
+            guards = X[orders_in(X) + 1 :][: count - 1, n : n + sizes.elements]  # as the series itself has them
+            guards[0] -= rows[:, n + nu]
+            rounding = np.abs(X[: count - 1, :n]) @ np.abs(rows[:, :n].T)
+            rounding[:4] += np.abs(U) @ np.abs(rows[:, n : n + nu].T)
+            assert np.all(np.abs(guards - terms[: count - 1]) <= 1e-14 * (rounding + np.abs(rows[:, n + nu])))
             guard = np.linspace(0.0, 1.0, 401)[:, None] ** np.arange(count) @ terms
             ends, rounding = guard[[0, -1]], 1e-12 * np.abs(terms).sum(axis=0)
             assert np.all(guard.max(axis=0) <= ends.max(axis=0) + close + rounding)

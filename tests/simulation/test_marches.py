@@ -57,7 +57,7 @@ def test_two_steps_from_one_state_are_two_steps(name):
     n, m, rows = shape.states, shape.inputs, shape.rows
     for mode in range(run.count):
         lines = run.modes.steps[mode, :, :rows]
-        once, twice = lines[: n + m + 1], lines[n + m + 1 + shape.jumps :]
+        once, twice = lines[: n + m + 1], lines[n + m + 1 + shape.jumps :][: n + 2 * m + 1]
         state, first, second = rng.normal(size=n) / np.abs(once[:n, :n]).max(), rng.normal(size=m), rng.normal(size=m)
         middle = np.concatenate([state, first, [1.0]]) @ once
         expected = np.concatenate([middle[:n], second, [1.0]]) @ once

@@ -117,7 +117,7 @@ class Modes(NamedTuple):
     reaction: Matrices  # (capacity, n + k, conditions): jump of the state, and impulse on each element
     limits: Matrices  # (capacity, k, 2): intervals of the guards while the mode lasts
     entry_limits: Matrices  # the same on entry
-    steps: Matrices  # (capacity, lines, rows): see `integrate.lines_of`
+    steps: Matrices  # (capacity, lines, rows): see `integrate.lines_of`, and then `flow.series`
     reach: Floats  # (capacity,) how far a Taylor series of the flow serves [s]
 
 
@@ -144,7 +144,7 @@ class Room(NamedTuple):
     ends: Floats  # of intervals in which a root is looked for
     inputs: Matrix  # (orders, inputs): coefficients of the inputs in powers of t / d; those beyond a cubic stay zero
     input_sizes: Matrix  # sums of the sizes of what these are added up from
-    series: Matrix  # (orders + 1, n): coefficients of the state in powers of t / d
+    series: Matrix  # coefficients of the state in powers of t / d, and of guards: see `flow.series`
     sizes: Matrix  # as `input_sizes`
 
 

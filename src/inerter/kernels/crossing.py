@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.arrays import FRICTION, NONE, Array, Run
+from inerter.kernels.arrays import FRICTION, NONE, Floats, Run
 from inerter.kernels.decorators import part
-from inerter.kernels.flow import first_root, polynomial, slope_at, value_at
+from inerter.kernels.flow import first_root, orders_in, slope_at, value_at
+from inerter.kernels.lanes import in_groups, multiply_add
 from inerter.kernels.locking import can_be_in
 
 ORDERS = 6  # derivatives that are looked at to see on which side of its limit a guard goes
@@ -32,14 +33,13 @@ def first_crossing(run: Run, count: int, d: float, ends: bool) -> Any:
     for e in range(sizes.elements):
         watch = run.motion.watch[e]
         if watch.touch < ORDERS:
-            row = modes.maps[m, mechanics.rows.guard + e]
             slips = mechanics.kind[e] == FRICTION and modes.state[m, e] != 0 and can_be_in(mechanics.limits, e, 0)
-            if slips and ended and _lies_still(run, row, min(count, ORDERS), modes.reach[m] / d):
+            if slips and ended and _lies_still(run, e, min(count - 1, ORDERS), modes.reach[m] / d):
                 watch.crossed = modes.state[m, e]
                 best, who = 0.0, e
                 break
-            s = _crossing(run, row, e, count, ends)
-            if slips and ends and _comes_to_zero(room.guard, count):
+            s = _crossing(run, e, count - 1, ends)
+            if slips and ends and _comes_to_zero(room.guard, count - 1):
                 place.ended = 1
             if s < best:
                 best, who = s, e
@@ -49,13 +49,19 @@ def first_crossing(run: Run, count: int, d: float, ends: bool) -> Any:
 @part(borrowing=True, inside=True)
 def advance_to(run: Run, count: int, s: float) -> bool:
     """Advance the state to the part s of the piece; False if the motion has grown beyond all bounds."""
-    motion, sizes = run.motion, run.mechanics.sizes
+    motion, sizes, X = run.motion, run.mechanics.sizes, run.room.series
+    groups, ending = in_groups(X, 0, X.shape), orders_in(X)
+    for g in range(groups.shape[1]):
+        total = groups[count - 1, g]
+        for k in range(count - 2, -1, -1):
+            total = multiply_add(total, s, groups[k, g])
+        groups[ending, g] = total
     for i in range(sizes.states):
-        total = polynomial(run.room.series, count, i, s)
-        if not (abs(total) < 1e150):
+        value = X[ending, i]
+        if not (abs(value) < 1e150):
             return False
-        motion.state[i] = total
-        motion.scale[i] = max(motion.scale[i], abs(total))
+        motion.state[i] = value
+        motion.scale[i] = max(motion.scale[i], abs(value))
     if s > 0.0:
         for e in range(sizes.elements):
             motion.watch[e].touch = 0
@@ -63,7 +69,7 @@ def advance_to(run: Run, count: int, s: float) -> bool:
 
 
 @part(borrowing=True, inside=True)
-def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
+def _crossing(run: Run, e: int, count: int, ends: bool) -> float:
     """First time, in units of the piece, at which the guard of element e is crossed; 2 if it is not.
 
     Its `crossed` is then the limit, if it is crossed with a slope beyond all rounding, else 0. A limit that is just
@@ -72,7 +78,7 @@ def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
     limits, watch = run.modes.limits[run.motion.place[0].mode, e], run.motion.watch[e]
     if limits[0] == -np.inf and limits[1] == np.inf:
         return 2.0
-    c, g, swing = run.room.guard, run.room.distance, _guard_polynomial(run, row, count)
+    c, g, swing = run.room.guard, run.room.distance, _guard_polynomial(run, e, count)
     while count > ORDERS and abs(c[count - 1]) <= _NEGLIGIBLE * swing:
         count -= 1
     best = 2.0
@@ -96,26 +102,18 @@ def _crossing(run: Run, row: Array, e: int, count: int, ends: bool) -> float:
 
 
 @part(borrowing=True, inside=True)
-def _guard_polynomial(run: Run, row: Array, count: int) -> float:
+def _guard_polynomial(run: Run, e: int, count: int) -> float:
     """Fill `room.guard` with the polynomial of a guard along the piece; returns a bound of its change."""
-    sizes, room, swing = run.mechanics.sizes, run.room, 0.0
-    n, c = sizes.states, room.guard
+    X, c, column, swing = run.room.series, run.room.guard, run.mechanics.sizes.states + e, 0.0
+    first = orders_in(X) + 1
     for k in range(count):
-        total = 0.0
-        for j in range(n):
-            total += row[j] * room.series[k, j]
-        if k < 4:
-            for j in range(sizes.inputs):
-                total += row[n + j] * room.inputs[k, j]
-        c[k] = total
-        swing += abs(total)
-    swing -= abs(c[0])
-    c[0] += row[n + sizes.inputs]
-    return float(swing)
+        c[k] = X[first + k, column]
+        swing += abs(c[k])
+    return float(swing - abs(c[0]))
 
 
 @part("boolean(float64[::1], int64)", borrowing=True)
-def _comes_to_zero(c: Array, count: int) -> bool:
+def _comes_to_zero(c: Floats, count: int) -> bool:
     """Whether a polynomial is zero at 1, and not before."""
     total, size = 0.0, 0.0
     for k in range(count):
@@ -125,26 +123,19 @@ def _comes_to_zero(c: Array, count: int) -> bool:
 
 
 @part(borrowing=True, inside=True)
-def _lies_still(run: Run, row: Array, count: int, longer: float) -> bool:
+def _lies_still(run: Run, e: int, count: int, longer: float) -> bool:
     """Whether a slip that has come to zero has ended for good: its velocity and the rates of it are rounding.
 
     What the piece would add up to if it were so many times `longer` counts: in a short one a slip that begins is slow.
     """
-    n, nu, room = run.mechanics.sizes.states, run.mechanics.sizes.inputs, run.room
-    value, size, scale = row[n + nu], abs(row[n + nu]), 1.0
-    change = 0.0
-    for k in range(count):
-        total = 0.0
-        for j in range(n):
-            total += row[j] * room.series[k, j]
-            size += abs(row[j] * room.series[0, j]) if k == 0 else 0.0
-        if k < 4:
-            for j in range(nu):
-                total += row[n + j] * room.inputs[k, j]
-                size += abs(row[n + j] * room.inputs[0, j]) if k == 0 else 0.0
-        if k == 0:
-            value += total
-        else:
-            scale *= longer
-            change += abs(total) * scale
-    return bool(abs(value) + change <= ROUNDING * size)
+    n, nu, X, U = run.mechanics.sizes.states, run.mechanics.sizes.inputs, run.room.series, run.room.inputs
+    row = run.modes.maps[run.motion.place[0].mode, run.mechanics.rows.guard + e]
+    first, size, change, scale = orders_in(X) + 1, abs(row[n + nu]), 0.0, 1.0
+    for j in range(n):
+        size += abs(row[j] * X[0, j])
+    for j in range(nu):
+        size += abs(row[n + j] * U[0, j])
+    for k in range(1, count):
+        scale *= longer
+        change += abs(X[first + k, n + e]) * scale
+    return bool(abs(X[first, n + e]) + change <= ROUNDING * size)

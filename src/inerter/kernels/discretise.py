@@ -159,6 +159,18 @@ def fill_second_step(steps: Matrix, shape: MarchShape) -> None:
     add_block(steps, first + n + 2 * m, 0, block(twice, n + m, n + m + 1, 0, shape.rows), 1.0)
 
 
+@part(typed=True, apart=True)
+def _fill_series(maps: Matrix, rows: int, n: int, steps: Matrix) -> None:
+    """Fill the last lines of `steps`, for `flow.series`: columns of rates and guards, and 1 where a rate is."""
+    columns = maps.shape[1]
+    top = steps.shape[0] - columns - 1
+    for i in range(rows):
+        for j in range(columns):
+            steps[top + j, i] = maps[i, j]
+    for i in range(n):
+        steps[top + columns, i] = 1.0
+
+
 @kernel("steps of a mode", typed=True)
 def discretise(
     sizes: Sizes, first: MapRows, used: Ints, shape: MarchShape, maps: Matrix, steps: Matrix, h: float
@@ -203,4 +215,5 @@ def discretise(
     at_once = AT_ONCE if shape.sharp else 0
     _bound_sway(guards, balanced, units, n, moving.used, steps, rows, at_once, shape.rows)
     fill_second_step(steps, shape)
+    _fill_series(maps, first.guard + k, n, steps)
     return 1.0 / max(spectral_radius_bound(maps, n), 1e-9)

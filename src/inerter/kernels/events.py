@@ -53,7 +53,13 @@ def integrate(run: Run, knots: Knots, record: History, account: Account, march: 
             knot_numbers(before, slope_before, before, slope_before, k, length, numbers)
         else:
             knot_numbers(knots.value, knots.slope, knots.value_before, knots.slope_before, k, length, numbers)
-            if k != refused and not account.wanted and place.clock == 0.0 and place.jumped == BEFORE and place.ended == 0:
+            if (
+                k != refused
+                and not account.wanted
+                and place.clock == 0.0
+                and place.jumped == BEFORE
+                and place.ended == 0
+            ):
                 m = place.mode
                 lines = MarchLines(run.modes.steps[m], run.modes.limits[m], run.motion.state, run.room.line)
                 span = Span(h, m, k, min(stop, knots.special[place.special]), place.settled)
@@ -104,7 +110,7 @@ def _integrate_segment(run: Run, knots: Knots, record: History, account: Account
         place.left -= 1
         d = min(length - t, modes.reach[m])
         inputs_from(room.numbers, sizes.roads, sizes.inputs, length, t, d, room.inputs)
-        count = series(modes.maps[m], run.motion.state, room.inputs, sizes.states, sizes.inputs, d, room.series)
+        count = series(modes.steps[m], run.motion.state, room.inputs, sizes.states, sizes.inputs, d, room.series)
         s, who = first_crossing(run, count, d, d == length - t)
         if account.wanted and s > 0.0:
             take_account(run, account, count, s, d)

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from inerter.kernels.decorators import part
+from inerter.kernels.lanes import in_groups, larger, largest_lane, multiply_add
 
 Array = Any
 CLOSE = 1e-15  # of the time since the piece began: a force that frees a friction must be met to rounding
+_SMALL = 1e-18  # coefficients relative to the largest one: far below its rounding
 
 
 @part(
@@ -77,37 +79,54 @@ def over_columns(row: Array, x: Array, u: Array, n: int, nu: int) -> float:
     return float(total)
 
 
-@part("int64(float64[:,::1], float64[::1], float64[:,::1], int64, int64, float64, float64[:,::1])", borrowing=True)
-def series(maps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
+@part(borrowing=True, inside=True)
+def series_lines(n: int, nu: int) -> int:
+    """Lines of the matrix for `series`: columns of states, inputs and 1, and which rows are rates of states."""
+    return n + nu + 2
+
+
+@part(borrowing=True, inside=True)
+def orders_in(X: Array) -> int:
+    """Number of coefficients that there is room for in `series`."""
+    return int((X.shape[0] - 1) // 2)
+
+
+@part(borrowing=True, inside=True, fused=True)
+def series(steps: Array, x: Array, U: Array, n: int, nu: int, d: float, X: Array) -> int:
     """Coefficients X[k] of the flow from x in powers of t / d, until they are below rounding; returns their number.
 
-    The last row of X is work space.
+    The last lines of a mode's `steps` are columns of rates and guards. Guards have coefficients, too, one fewer: those
+    of order k are behind the states of X[orders + 1 + k], where `orders_in` X. One row of X is work space.
     """
-    last = X.shape[0] - 1
+    last, height, width = orders_in(X), series_lines(n, nu), steps.shape[1]
+    lines = in_groups(steps, (steps.shape[0] - height) * width, (height, width))
+    groups = in_groups(X, 0, X.shape)
     for i in range(n):
         X[0, i] = x[i]
-        X[last, i] = abs(x[i])  # the largest coefficient so far
-    small = 0
+    for g in range(groups.shape[1]):
+        groups[last, g] = abs(groups[0, g])  # the largest coefficient so far
     for k in range(1, last):
         quiet = True
-        for i in range(n):
-            total = 0.0
-            for j in range(n):
-                total += maps[i, j] * X[k - 1, j]
+        for g in range(groups.shape[1]):
+            total, other = lines[n + nu, g] * (1.0 if k == 1 else 0.0), lines[n + nu, g] * 0.0
             if k <= 4:
                 for j in range(nu):
-                    total += maps[i, n + j] * U[k - 1, j]
-                if k == 1:
-                    total += maps[i, n + nu]
-            total *= d / k
-            X[k, i] = total
+                    total = multiply_add(lines[n + j, g], U[k - 1, j], total)
+            for j in range(0, n - 1, 2):  # two sums, which need not wait for each other
+                total = multiply_add(lines[j, g], X[k - 1, j], total)
+                other = multiply_add(lines[j + 1, g], X[k - 1, j + 1], other)
+            if n % 2:
+                other = multiply_add(lines[n - 1, g], X[k - 1, n - 1], other)
+            total = total + other
+            groups[last + k, g] = total
+            total = total * (lines[n + nu + 1, g] * (d / k))
+            groups[k, g] = total
             size = abs(total)
-            if size > X[last, i]:
-                X[last, i] = size
-            if size > 1e-18 * X[last, i]:
+            largest = larger(size, groups[last, g])
+            groups[last, g] = largest
+            if largest_lane(size - largest * _SMALL) > 0.0:
                 quiet = False
-        small = small + 1 if quiet and k > 4 else 0
-        if small == 2:
+        if quiet and k > 4:  # all further ones follow from these
             return k + 1
     return int(last)
 
@@ -121,7 +140,7 @@ def polynomial(coefficients: Array, count: int, i: int, s: float) -> float:
     return float(total)
 
 
-@part("float64(float64[::1], int64, float64)", borrowing=True)
+@part("float64(float64[::1], int64, float64)", borrowing=True, fused=True)
 def value_at(c: Array, count: int, s: float) -> float:
     """The polynomial with coefficients c[0], ..., c[count - 1]."""
     total = c[count - 1]
@@ -130,7 +149,7 @@ def value_at(c: Array, count: int, s: float) -> float:
     return float(total)
 
 
-@part("float64(float64[::1], int64, float64)", borrowing=True)
+@part("float64(float64[::1], int64, float64)", borrowing=True, fused=True)
 def slope_at(c: Array, count: int, s: float) -> float:
     """Derivative of the polynomial with coefficients c[0], ..., c[count - 1]."""
     total = 0.0

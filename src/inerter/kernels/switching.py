@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from inerter.kernels.arrays import FRICTION, NONE, Array, Floats, Matrix, Run
+from inerter.kernels.arrays import FRICTION, Array, Floats, Matrix, Run
 from inerter.kernels.crossing import MET, ORDERS, ROUNDING
 from inerter.kernels.decorators import part
 from inerter.kernels.flow import input_sizes, inputs_from, over_columns

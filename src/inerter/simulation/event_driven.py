@@ -38,7 +38,8 @@ from inerter.kernels.arrays import (
 from inerter.kernels.crossing import ORDERS
 from inerter.kernels.discretise import discretise
 from inerter.kernels.events import evaluate, integrate
-from inerter.kernels.integrate import lines_of, march_for, march_of, room_of
+from inerter.kernels.flow import series_lines
+from inerter.kernels.integrate import lines_of, march_for, march_of, room_of, round_up
 from inerter.kernels.modes import build
 from inerter.kernels.prepare import prepare
 from inerter.networks.elements.roles import GuardRole, LinearRole
@@ -331,7 +332,7 @@ def _machine(
     lines, followed, swaying = lines_of(*shape)
     march, modes = (
         march_of(sizes.states, tuple(used.tolist()), *shape[2:]),
-        _modes(mechanics, lines, followed + swaying),
+        _modes(mechanics, lines + series_lines(sizes.states, sizes.inputs), followed + swaying),
     )
     machine, count = _Machine(mechanics, march, used, modes, {}, 0), 0
     switch = bool(np.all(np.isfinite(limits)) and np.all(limits[:, 0] < limits[:, 1]))
@@ -433,7 +434,7 @@ def _room(sizes: Sizes, channels: int, line: int) -> Room:
         ends=np.zeros(64),
         inputs=np.zeros((ORDERS, nu)),
         input_sizes=np.zeros((ORDERS, nu)),
-        series=np.zeros((_TERMS + 1, n)),
+        series=aligned_zeros(2 * _TERMS + 1, round_up(n + sizes.elements)),
         sizes=np.zeros((ORDERS, n)),
     )
 

@@ -7,6 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 from campaigns import sampled
+from scipy.optimize import brentq
 from wang_su import paper_half_car, paper_quarter_car
 
 import inerter as it
@@ -107,6 +108,31 @@ def test_with_backlash_no_sine_has_a_higher_gain():
     found = it.evaluate(car, J5, SIMULATED)
     assert found.status.ok
     assert gain(car, 9.31 / (2.0 * np.pi)) <= found.value * (1.0 + found.error_bound)
+
+
+@pytest.mark.parametrize(("damping", "clearance"), sampled([(8.0, 5e-3), (20.0, 5e-3), (12.0, 7e-3)], [(8.0, 5e-3)]))
+def test_a_sweep_finds_the_larger_of_several_steady_motions(damping, clearance):
+    """On stops the resonance bends to higher frequencies, where a start from rest leads to a smaller motion.
+
+    By harmonic balance with the equivalent stiffness of a spring behind a gap, at resonance: amplitude F / (c omega).
+    """
+    mass, stiffness, stop, force = 10.0, 4000.0, 8000.0, 10.0
+    strut = Spring(stiffness) | Damper(damping) | (Gap(clearance) - Spring(stop))
+    car = it.Mechanism(
+        (it.Coordinate("mass", mass),),
+        (it.Strut("strut", strut, {"mass": 1.0}, {}),),
+        forces=(it.Force("force", {"mass": 1.0}),),
+    )
+    found = it.evaluate(car, it.PeakResponse("force", "mass_displacement", amplitude=force), SIMULATED)
+
+    def unbalanced(amplitude):
+        share = min(clearance / amplitude, 1.0)
+        equivalent = stop * (1.0 - (np.arcsin(share) + share * np.sqrt(1.0 - share**2)) * 2.0 / np.pi)
+        return force / (damping * np.sqrt((stiffness + equivalent) / mass)) - amplitude
+
+    amplitude = brentq(unbalanced, 1e-4, 1.0)
+    assert found.value == pytest.approx(amplitude / force, rel=0.03)
+    assert found.error_bound < 0.03
 
 
 @pytest.mark.parametrize("design", sampled([series, backlash], [series]))

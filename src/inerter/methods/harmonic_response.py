@@ -29,6 +29,8 @@ _WITHIN = 1.25  # ratio to a frequency near which a peak is expected
 _MOST_BEYOND = 40  # steps of that ratio beyond the frequencies that were visited
 _NEAR = 1e-3  # relative distance up to which a peak's frequency is found
 _STEPPED = 1e-5  # relative error of a ratio by the time step
+_SWEPT, _FINELY, _RISES = 1.02, 1.001, 1e-4  # ratios of frequencies in a sweep, and what counts as higher in it
+_MOST_SWEPT = 100  # frequencies of a sweep
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +46,8 @@ class ForcedResponse:
     amplitude: float  # [N], [m] or [m/s]
     filter: Filter | None = None  # that the output passes through
 
-    def __call__(self, omega: float) -> tuple[float, Squares]:
-        """Ratio at `omega` [rad/s], and the mean squares of the steady state."""
+    def __call__(self, omega: float, start: Array | None = None) -> tuple[float, Squares]:
+        """Ratio at `omega` [rad/s], and the mean squares of the steady state that begins at `start`, or at rest."""
         period = 2.0 * pi / omega
         step = period / max(_POINTS, round(period / _LONGEST))
         mechanism, path = self.system.mechanism, self.path
@@ -55,7 +57,7 @@ class ForcedResponse:
         names = [*roads, *(force.name for force in mechanism.forces)]
         signals = [signal if name == path.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
-        state = initial_state(self.system, table.value[0], "rest")
+        state = initial_state(self.system, table.value[0], "rest") if start is None else start
         lower, upper = self.system.mechanics.limits.T
         uneven = bool(np.any(lower != -upper))
         found = steady_squares(
@@ -94,7 +96,8 @@ def local_maxima(
     """Local maxima of the ratio near the expected frequencies [rad/s], the highest first.
 
     One that is expected at zero is the ratio at `lowest`. None of the frequencies `visited` before, or on the way, has
-    a higher ratio: around the highest of them is a maximum too, which the ranges of the search may have cut.
+    a higher ratio: around the highest of them is a maximum too, which the ranges of the search may have cut. Where
+    there are several steady states, as with stops, the highest goes on to that to which a slow sweep carries it.
     """
     near = np.unique(expected[expected > 0.0])
     middles = np.sqrt(near[1:] * near[:-1])
@@ -112,7 +115,30 @@ def local_maxima(
     points = {omega: found for several in (visited or {}, *searched) for omega, found in several.items()}
     if points and max(ratio for ratio, _ in points.values()) > (1.0 + best.missed) * best.peak.gain:
         peaks.append(_summit(points | _search(forced, *_enclose(forced, points, lowest))))
-    return sorted(peaks, key=lambda summit: -summit.peak.gain)
+    peaks.sort(key=lambda summit: -summit.peak.gain)
+    return [*_sweep(forced, peaks[0]), *peaks]
+
+
+def _sweep(forced: ForcedResponse, summit: Summit) -> list[Summit]:
+    """The highest ratio to which slow sweeps up and down from a summit carry its motion; none if it is no higher.
+
+    Each frequency begins with the state at which the one before ended, and a sweep ends where the ratio falls.
+    """
+    omega, gain, squares, count, slope = summit.peak.omega, summit.peak.gain, summit.found, 0, 0.0
+    if not omega or not squares.ending.size:
+        return []
+    for step in (_SWEPT, 1.0 / _SWEPT, _FINELY, 1.0 / _FINELY):
+        if step == _FINELY and not slope:
+            break
+        while count < _MOST_SWEPT:
+            count += 1
+            ratio, found = forced(omega * step, squares.ending)
+            if not ratio > (1.0 + _RISES) * gain:
+                break
+            slope = (ratio / gain - 1.0) / abs(np.log(step))
+            omega, gain, squares = omega * step, ratio, found
+    missed = _RISES + slope * float(np.log(_FINELY))
+    return [Summit(GainPeak(omega, gain), squares, missed)] if slope else []
 
 
 def _enclose(forced: ForcedResponse, points: Visited, lowest: float) -> tuple[float, float]:

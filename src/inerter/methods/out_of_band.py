@@ -35,14 +35,13 @@ from inerter.methods.method import Estimate
 from inerter.methods.realisations import (
     STEP,
     RandomExcitation,
-    RoadRun,
     check_held_roads,
     factor_of,
     random_excitation,
     realisation_seeds,
     run,
 )
-from inerter.methods.steady_squares import mean_bound, steady_state_error
+from inerter.methods.steady_squares import Squares, mean_bound, steady_state_error
 from inerter.norms.h2 import h2
 from inerter.norms.response import modal_response
 from inerter.systems.linear import LinearSystem
@@ -98,7 +97,7 @@ class OnRoads:
         """Factor of each output's r.m.s. value in the index."""
         return np.array([abs(output.weight) for output in self.definition.outputs])
 
-    def runs(self, first: int, stop: int, pool: Executor, *, spectra: bool = False) -> list[RoadRun]:
+    def runs(self, first: int, stop: int, pool: Executor, *, spectra: bool = False) -> list[Squares]:
         """Results of the realisations `first`, ..., `stop` - 1, with the number of spectral lines if `spectra`."""
         seeds = realisation_seeds(self.seed, first, stop)
         outputs, filters = (*self.outputs, *self.frictions, *self.play), self.definition.filters
@@ -139,7 +138,7 @@ def on_roads(
     return OnRoads(*with_velocities(system), play, definition, excitation, linear, seed, longest)
 
 
-def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], OutOfBandContribution]:
+def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Squares], OutOfBandContribution]:
     """The design on roads long enough to resolve its response, the first runs there, and the out-of-band rest.
 
     On those of the usual length if none of the lengths will do. On a longer road friction that stuck may slip, so one
@@ -160,7 +159,7 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun]
     return longer, found, missing
 
 
-def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun], OutOfBandContribution]:
+def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Squares], OutOfBandContribution]:
     found = design.runs(0, _FIRST, pool, spectra=bool(design.play))
     missing = out_of_band_contribution(design, found)
     if design.play and all(ran.status.ok for ran in found):
@@ -169,7 +168,7 @@ def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[RoadRun]
     return design, found, missing
 
 
-def _peaked_by_play(design: OnRoads, found: Sequence[RoadRun], higher: Sequence[RoadRun]) -> float:
+def _peaked_by_play(design: OnRoads, found: Sequence[Squares], higher: Sequence[Squares]) -> float:
     """Share of a mean square by which it may be off, as lines have lower peaks than a random road, with gaps and such.
 
     No linear model tells which resonance a gap changes, nor how wide that is: the change of the response is that of
@@ -187,7 +186,7 @@ def _on_longer_roads(design: OnRoads) -> OnRoads:
     return replace(design, excitation=replace(design.excitation, period=_LONGER * design.excitation.period))
 
 
-def _is_resolved(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandContribution) -> bool:
+def _is_resolved(design: OnRoads, found: Sequence[Squares], missing: OutOfBandContribution) -> bool:
     """Whether the period is long enough for the motion, or no period would be."""
     if design.excitation.hold is not None or worst_of([ran.status for ran in found]).kind is StatusKind.FAILED:
         return True
@@ -197,7 +196,7 @@ def _is_resolved(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandCo
     return bool(np.any(np.isinf(missing.power))) or (settled and missing.unseen <= _UNSEEN)
 
 
-def out_of_band_contribution(design: OnRoads, found: Sequence[RoadRun]) -> OutOfBandContribution:
+def out_of_band_contribution(design: OnRoads, found: Sequence[Squares]) -> OutOfBandContribution:
     """Contribution missing from the lines of these roads, by the equivalent linear model of the motion `found`.
 
     Its squared norms less its mean squares on the lines.
@@ -262,7 +261,7 @@ def _loose_note(system: PiecewiseSystem) -> str:
     )
 
 
-def _left_over(found: Sequence[RoadRun]) -> float:
+def _left_over(found: Sequence[Squares]) -> float:
     """Share of a mean square that lines may miss, from what a period leaves of the simulated motion."""
     return 2.0 * max(ran.steady.remaining_share for ran in found)
 
@@ -372,7 +371,7 @@ def mean_on_roads(design: OnRoads, wanted: int, relative_error: float | None, po
         found += design.runs(len(found), wanted, pool)
 
 
-def _average_index(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBandContribution) -> Estimate:
+def _average_index(design: OnRoads, found: Sequence[Squares], missing: OutOfBandContribution) -> Estimate:
     """The index from the mean squares of all roads; under conventions that hold them, the mean of its values."""
     power = np.array([ran.power[: len(design.outputs)] for ran in found]) + missing.power
     status, unit = worst_of([missing.status, *(ran.status for ran in found)]), design.definition.unit
@@ -392,7 +391,7 @@ def _average_index(design: OnRoads, found: Sequence[RoadRun], missing: OutOfBand
     return with_error_sources(estimate, _errors(missing, found, len(design.outputs)), PROMISE)
 
 
-def _errors(missing: OutOfBandContribution, found: Sequence[RoadRun], outputs: int) -> list[ErrorSource]:
+def _errors(missing: OutOfBandContribution, found: Sequence[Squares], outputs: int) -> list[ErrorSource]:
     """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
     kept = [ran for ran in found if np.all(np.isfinite(ran.lines))] or found  # whose contacts are known, if any is
     jumps = mean_bound([ran.jumps[:outputs] for ran in kept]) * float(np.sqrt(len(kept) / len(found)))

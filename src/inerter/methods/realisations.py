@@ -11,18 +11,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import Status
 from inerter.formatting import format_quantity
 from inerter.indices.definition import IndexDefinition
 from inerter.methods.linear import Conventions
-from inerter.methods.steady_squares import steady_squares
+from inerter.methods.steady_squares import Squares, steady_squares
 from inerter.signals.harmonics import Harmonics, multisine
 from inerter.signals.road import Road
 from inerter.signals.signal import Signal
 from inerter.simulation.initial_state import initial_state
 from inerter.simulation.inputs import InputTable, check_holds, parts_of, tabulate
 from inerter.simulation.periodic_steady_state import FEW_PERIODS
-from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
 from inerter.systems.input_paths import InputPath
 from inerter.systems.outputs import input_names
@@ -96,17 +94,6 @@ def _one_road(reached: Sequence[Sequence[InputPath]], roads: int) -> bool:
     return alone and all(a.plain for a in on_roads) and len({a.source for a in on_roads}) == 1
 
 
-@dataclass(frozen=True)
-class RoadRun:
-    """Mean squares over one period of the steady state on one road."""
-
-    power: Array  # mean squares of the filtered outputs and of those without a filter, nan where there are none
-    status: Status
-    steady: PeriodicState
-    jumps: Array  # what samples may miss of the r.m.s. values, relative to them
-    lines: Array  # number of spectral lines over which each motion spreads; nan without a spectrum
-
-
 def random_excitation(
     system: PiecewiseSystem, definition: IndexDefinition, conventions: Conventions, period: int | None = None
 ) -> RandomExcitation:
@@ -159,12 +146,12 @@ def run(
     seed: int,
     *,
     spectra: bool = False,
-) -> RoadRun:
+) -> Squares:
     """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
     inputs = table(excitation, seed)
     state = initial_state(system, inputs.value[0], "rest")
     most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / excitation.period))
-    return RoadRun(*steady_squares(system, inputs, outputs, filters, state, most, spectra=spectra))
+    return steady_squares(system, inputs, outputs, filters, state, most, spectra=spectra)
 
 
 def realisation_seeds(seed: int, first: int, stop: int) -> list[int]:

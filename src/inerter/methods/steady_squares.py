@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,11 +21,13 @@ Array = NDArray[np.float64]
 _DEVIATIONS = 4.0  # standard deviations of the error by jumps between samples that a bound of it has
 
 
-class Squares(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Squares:
     """Mean squares of outputs over a period, how far to trust them, and how well the motion repeats.
 
     `jumps` is what samples may miss of each r.m.s. value, relative to it, where friction turns between them. `lines` is
     the number of spectral lines over which each motion spreads: of equal ones their number, nan without a spectrum.
+    `ending` is the state at the end of the period.
     """
 
     power: Array
@@ -33,6 +35,7 @@ class Squares(NamedTuple):
     steady: PeriodicState
     jumps: Array
     lines: Array
+    ending: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def steady_state_error(found: Sequence[PeriodicState], peaks: float) -> ErrorSource:
@@ -63,7 +66,7 @@ def steady_squares(
         if not integration.status.ok:
             return _nan_squares(len(outputs), integration.status, steady)
         jumps = missed_by_samples(integration, outputs, np.sqrt(found))
-        return Squares(found, integration.warning, steady, jumps, np.full(len(outputs), np.nan))
+        return Squares(found, integration.warning, steady, jumps, np.full(len(outputs), np.nan), integration.state)
     integration, steady = settle(system, table, state, energy=False, most=most)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
@@ -84,7 +87,7 @@ def steady_squares(
     again = np.sqrt((lines * passed).sum(axis=1)) / count
     with np.errstate(divide="ignore", invalid="ignore"):
         jumps = missed_by_samples(integration, outputs, power / again)
-    return Squares(power, trajectory.status, steady, jumps, number_of_lines(lines))
+    return Squares(power, trajectory.status, steady, jumps, number_of_lines(lines), integration.state)
 
 
 def number_of_lines(squares: Array) -> Array:

@@ -98,6 +98,18 @@ def test_readings_are_found_at_a_rate_that_no_whole_number_divides(
     assert repair(merged).interval == pytest.approx(every / RATE, rel=1e-4)
 
 
+@pytest.mark.parametrize("way", ["held", "interpolated"])
+def test_spikes_between_readings_hide_no_slower_channel(way: str) -> None:
+    random = np.random.default_rng(3)
+    readings, size = random.standard_normal(200), 797
+    at = np.arange(size)
+    values = np.repeat(readings, 4)[:size] if way == "held" else np.interp(at, 4.0 * np.arange(200), readings)
+    values[[101, 402, 703]] += 30.0
+    found = slower_channel(values)
+    assert found is not None
+    assert (found.first, found.every, found.way) == (0, 4, way)
+
+
 NATURAL = {
     "noise": np.random.default_rng(1).standard_normal(SIZE),
     "steps of an encoder": 1e-5 * np.rint(1e5 * moved(0)),

@@ -122,17 +122,20 @@ def explanations(
 ) -> list[Explanation]:
     """Every hypothesis with the share of a misfit that it explains, the most likely first.
 
-    Without a misfit only the hypotheses that the records show, and laws that explain much of the residual where the
-    noise of the force is only estimated. `places` localises the misfit in each record. All hypotheses are fitted
-    roughly, by secants, and those that explain most are fitted to convergence. Of those that explain about as much,
-    that with fewer unknowns is the more likely.
+    Without a misfit only the hypotheses that the records show and that change a value by more than its standard error,
+    and laws that explain much of the residual where the noise of the force is only estimated. `places` localises the
+    misfit in each record. All hypotheses are fitted roughly, by secants, and those that explain most are fitted to
+    convergence. Of those that explain about as much, that with fewer unknowns is the more likely.
     """
     causes = Causes(before, places, point=optimum.point)
     known = replace(problem, whitenings=by.fitted, horizon=1.0)
     every = causes.of(known)
     slopes = known.jacobian(optimum.point, steps_of(optimum))
-    if every:
-        return _fit_all(causes, by, optimum, slopes, known)
+    found = _fit_all(causes, by, optimum, slopes, known) if every else []
+    if before.is_noise_limited:
+        found = [e for e in found if _changes_values(e, problem.space, optimum)]
+    if found:
+        return found
     hidden = (replace(causes, made=None, hidden=kind) for kind in (HiddenCause.LAW, HiddenCause.LOAD_CELL))
     likely = (c for c in hidden if _is_hidden(known, optimum, slopes, c))
     return next(filter(None, (_fit_all(c, by, optimum, slopes, known) for c in likely)), [])
@@ -160,6 +163,13 @@ def _fit_all(
         )
         last[:_RESTARTED] = again
     return _rank([a.explanation for a in (*last, *first[_FITTED:])], causes.hidden)
+
+
+def _changes_values(e: Explanation, space: Space, optimum: BestFit) -> bool:
+    """Whether a value differs under the hypothesis by more than its standard error."""
+    values, errors = space.to_values(optimum.point), optimum.errors * space.slopes(optimum.point)
+    known = zip(space.names, values, errors, strict=True)
+    return any(not abs(e.estimates[name][0] - value) <= error for name, value, error in known if name in e.estimates)
 
 
 def _rank(every: Sequence[Explanation], hidden: HiddenCause) -> list[Explanation]:

@@ -29,6 +29,7 @@ _HELD = 4  # equal samples in a row, at least
 _LOCAL = 100  # samples to either side, which say how often values repeat by chance
 _RARE = 1e-3  # expected number of such repetitions in a record that holds none
 _REST = 3.0  # steps of a channel, within which its values are those before the motion begins, or after it has ended
+_FAR = 5.0  # times the noise: departure of fewer repeated values, as others change nothing
 _COMMON = 0.2  # of the samples: repetitions of a channel whose values repeat anyway, as friction without noise
 _BEFORE, _DEGREE = 6, 2  # samples on either side of a held value, and the degree of the polynomial through them
 _JOINT = 10.0  # standard deviations between the extrapolations from both sides
@@ -117,7 +118,7 @@ def _local_scale(deviation: Vector) -> Vector:
 
 
 def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
-    """Runs of at least four equal values where noise or motion would have changed them.
+    """Runs of at least four equal values where noise or motion would have changed them; fewer where both would have.
 
     A clipped channel, one at rest and one whose values repeat all the time have no held values; nor has a record before
     its motion begins, or after it has ended, where few samples in a period make noise look larger than steps. A channel
@@ -130,8 +131,9 @@ def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
     [(500, 506)]
     """
     same = np.diff(values) == 0.0
-    candidates = [(a, b + 1) for a, b in true_runs(same) if b + 1 - a >= _HELD]
-    if not candidates or values.size < 4 * _BEFORE:
+    runs = [(a, b + 1) for a, b in true_runs(same)]
+    candidates = [(a, b) for a, b in runs if b - a >= _HELD]
+    if not runs or values.size < 4 * _BEFORE:
         return []
     inside = np.zeros(values.size, dtype=bool)
     for a, b in candidates:
@@ -140,11 +142,16 @@ def held_value_instants(values: Vector, smooth: bool = True) -> list[Instant]:
     ends = float(values.max()), float(values.min())
     away_from = [np.abs(values - values[end]) > _REST * step for end in (0, -1)]
     begun, ended = int(np.argmax(away_from[0])), values.size - int(np.argmax(away_from[1][::-1]))
+    alike = step / (math.sqrt(4.0 * math.pi) * noise) if noise > step else 1.0  # noise of size one, in these steps
     found = []
-    for a, b in candidates:
+    for a, b in runs:
         if values[a] in ends or a < begun or b > ended:
             continue
         away, scatter = _departure(values, a, b)
+        if b - a < _HELD:
+            if not smooth and alike ** (b - a - 1) * values.size < _RARE and away > _FAR * max(noise, scatter):
+                found.append(Instant(a, b, away))
+            continue
         moved = smooth and away > max(3.0 * step, 5.0 * noise, 5.0 * scatter, 1e-9 * float(np.ptp(values)))
         if moved or (noise > step and _by_chance(same, inside, a, b, step / max(noise, 1e-300)) * values.size < _RARE):
             found.append(Instant(a, b, away))

@@ -26,6 +26,7 @@ _SLIGHT = 0.02  # of the largest second differences: what digits of a file may l
 _SECOND = 2.01  # steps that rounding may leave of a second difference
 _CHANGE = 1.5  # steps, median of the changes: smaller ones are those of an encoder at constant speed
 _SURE = 20.0  # minus the logarithm of the probability that other changes are as even by chance
+_ELSEWHERE = 0.05  # of the changes: those that spikes may make between readings
 _ASTRAY = 0.1  # samples by which ends of lines may differ from even ones, but for a few of them
 _WHOLE = 1e-3  # of a sample: rates with a smaller difference from a whole ratio have that ratio
 
@@ -77,13 +78,24 @@ def slower_channel(values: Vector) -> SlowerChannel | None:
         at = np.flatnonzero(np.abs(change) > limit)
         if at.size < _FEWEST or float(np.median(np.abs(change[at]))) <= _CHANGE * step:
             continue
-        every = int(np.gcd.reduce(np.diff(at)))
+        on_grid = _most_even(at)
+        every = int(np.gcd.reduce(np.diff(on_grid)))
         if 2 <= every <= _MOST:
-            return SlowerChannel(int(at[0] + 1) % every, every, way)
+            return SlowerChannel(int(on_grid[0] + 1) % every, every, way)
         grid = _even_instants(np.asarray(at, dtype=float) + 1.0) if way == "held" else _even_ends(change, at)
         if grid is not None and _LEAST[way] <= grid[1] <= _MOST:
             return SlowerChannel(*grid, way)
     return None
+
+
+def _most_even(at: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The changes at whole multiples of one interval, where few, such as those of spikes, are elsewhere; else all."""
+    for every in range(_MOST, 1, -1):
+        phase = at % every
+        on = phase == int(np.argmax(np.bincount(phase)))
+        if np.mean(on) > 1.0 - _ELSEWHERE:
+            return at[on]
+    return at
 
 
 def _even_instants(changes: Vector) -> tuple[float, float] | None:

@@ -94,7 +94,7 @@ def _most_even(at: NDArray[np.int64]) -> NDArray[np.int64]:
         phase = at % every
         on = phase == int(np.argmax(np.bincount(phase)))
         if np.mean(on) > 1.0 - _ELSEWHERE:
-            return at[on]
+            return np.asarray(at[on])
     return at
 
 

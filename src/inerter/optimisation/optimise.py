@@ -48,7 +48,7 @@ _MOST_TRIED, _MOST_SEARCHES = 6, 2  # starts that are evaluated, and searches fr
 _APART = 0.05  # logarithmic distance above which two starts of such searches are distinct
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _CONFIRMED = 1e-8  # relative difference up to which two codes have found the same value
-_LONELY = 1.0 / 6.0  # share of starts that end at optima of their own, from which on there may be many more of these
+_LONELY = 1.0 / 6.0  # share of optima at which one start alone ends, from which on there may be many more of these
 _DENSER, _MORE = 4, 4  # logarithm to base two of how much denser a sample then is, and how many more starts it has
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
@@ -206,16 +206,13 @@ def _best(
             linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
     first: list[Array] = []
     lowest: list[float] = []  # of two searches that must agree, where there are many local optima
-    compiled = _compiled_searches(vehicle, index, method, problem, starts, seed)
-    if compiled is not None:
-        found, evaluations = compiled, 0
-    elif quick:
-        first, evaluations = _starting_points(problem, starts, seed)
-        found = _searches(problem, first)
-        if not problem.bounds and _has_many_optima(found):
+    if quick:
+        search = partial(_quick_search, vehicle, index, method, problem)
+        found, first, evaluations = search(starts, seed)
+        if _has_many_optima(found):
             for number in (1, 2):
-                further, tried = _denser_search(problem, starts, seed + number)
-                lowest.append(min((local.value for local in further), default=np.inf))
+                further, _, tried = search(_MORE * starts, seed + number, _DENSER)
+                lowest.append(min((local.value for local in further if local.excess <= KEPT), default=np.inf))
                 found, evaluations = found + further, evaluations + tried
     else:
         first = [] if linear is None else [linear]
@@ -266,6 +263,26 @@ def _best(
         gain_over_linear=over_linear,
         limits=held,
     )
+
+
+def _quick_search(
+    vehicle: Vehicle,
+    index: IndexLike,
+    method: Method,
+    problem: ConstrainedProblem,
+    starts: int,
+    seed: int,
+    denser: int = 0,
+) -> tuple[list[LocalOptimum], list[Array], int]:
+    """Local optima by gradients, starting points where they are known, and the number of evaluations of their sample.
+
+    The sample is denser by that power of two.
+    """
+    compiled = _compiled_searches(vehicle, index, method, problem, starts, seed)
+    if compiled is not None:
+        return compiled, [], 0
+    points, evaluations = _starting_points(problem, starts, seed, denser)
+    return _searches(problem, points), points, evaluations
 
 
 def _compiled_searches(
@@ -396,26 +413,21 @@ def _has_many_optima(found: Sequence[LocalOptimum]) -> bool:
     """Whether many searches ended at optima where no other did, as on the ripples that a delay makes at low speed.
 
     Their share estimates the probability that a further search ends at an optimum that is not known yet (Good, 1953).
-    Where the optimum is flat, they end in several places with one value.
+    Where the optimum is flat, they end in several places with one value. Ends outside the limits are no optima; where
+    others are, a single one is alone too.
     """
-    logarithms = np.log([local.value for local in found if np.isfinite(local.value)])
+    logarithms = np.log([local.value for local in found if np.isfinite(local.value) and local.excess <= KEPT])
     others = (np.abs(logarithms[:, None] - logarithms) < AGREEMENT).sum(axis=1) - 1
-    return int(np.sum(others == 0)) > max(_LONELY * len(found), 1)
-
-
-def _denser_search(problem: ConstrainedProblem, starts: int, seed: int) -> tuple[list[LocalOptimum], int]:
-    """Local optima from more starts of a denser sample, and the number of its evaluations."""
-    points, evaluations = _starting_points(problem, _MORE * starts, seed, denser=_DENSER)
-    return _searches(problem, points), evaluations
+    alone = int(np.sum(others == 0))
+    return alone >= max(_LONELY * logarithms.size, 2 if logarithms.size == len(found) else 1)
 
 
 def _many_optima_status(lowest: Sequence[float], unit: str) -> Status:
-    first, second = format_alike(lowest, unit)
-    message = (
-        f"two searches from independent starts found {first} and {second} among many local optima, so that a better "
-        "one may exist"
-    )
-    return Status(StatusKind.INACCURATE, message)
+    found = "one of two searches from independent starts found no design within the limits"
+    if np.all(np.isfinite(lowest)):
+        first, second = format_alike(lowest, unit)
+        found = f"two searches from independent starts found {first} and {second} among many local optima"
+    return Status(StatusKind.INACCURATE, f"{found}, so that a better one may exist")
 
 
 def _starting_points(problem: ConstrainedProblem, starts: int, seed: int, denser: int = 0) -> tuple[list[Array], int]:

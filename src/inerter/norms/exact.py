@@ -19,7 +19,7 @@ from inerter.norms.delay import pade_coefficients
 from inerter.norms.mean_square import Transfer, UnknownError, axis_frequencies, mean_square
 from inerter.norms.squared_gain import SquaredGain
 from inerter.systems.linear import LinearSystem
-from inerter.systems.polynomials import Polynomial, TransferFunctions, add, mirror, multiply
+from inerter.systems.polynomials import Polynomial, TransferFunctions, add, improve_roots, mirror, multiply
 
 Matrix = NDArray[np.float64]
 EXACT = 1e-12  # relative error of what is found here: digits in which results agree, and a few roundings
@@ -83,6 +83,18 @@ def responses_exactly(system: LinearSystem, omega: Matrix) -> NDArray[np.complex
     functions = _functions(system)
     shape = omega.size, len(system.outputs), len(system.inputs)
     return np.array([functions.at(one) for one in omega.tolist()], dtype=complex).reshape(shape)
+
+
+def poles_exactly(system: LinearSystem) -> NDArray[np.complex128]:
+    """Poles [1/s] of the motions of a system, however its values scatter."""
+    known = np.linalg.eigvals(system.A).astype(complex)
+    known = known[np.argsort(np.abs(known))]
+    denominator = _functions(system).denominator
+    if len(denominator) != known.size + 1:
+        return known
+    at_zero = next(i for i, c in enumerate(denominator) if c)
+    moving = improve_roots(denominator[at_zero:], known[at_zero:].tolist())
+    return np.array([0.0] * at_zero + moving, dtype=complex)
 
 
 def _functions(system: LinearSystem) -> TransferFunctions:

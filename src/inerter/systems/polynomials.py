@@ -19,6 +19,7 @@ Polynomial = list[int]
 Coefficient = TypeVar("Coefficient", int, Decimal)
 _PRIME = (1 << 61) - 1
 _FINE = Fraction(1, 1 << 56)  # of a root, to which an interval is halved
+_ITERATIONS, _CLOSE, _TURN = 200, 4e-16, 1.0 + 1e-3j  # of a search for all roots: at most, last step, first turn
 
 
 def trim(p: Sequence[Coefficient]) -> list[Coefficient]:
@@ -198,6 +199,43 @@ def _refine_root(p: Polynomial, low: Fraction, high: Fraction) -> Fraction:
     while high - low > _FINE * low:
         low, high = _bisect_root(p, low, high)
     return high
+
+
+def improve_roots(p: Polynomial, guesses: Sequence[complex]) -> list[complex]:
+    """All roots of `p`, of which none is zero, from as many `guesses`, by the iteration of Aberth (1973).
+
+    The ratio of `p` and its derivative is rounded once at each guess, so that a root is as near as a number can be.
+    Guesses are turned out of the real axis, which they would not leave by themselves.
+    """
+    slope, roots = derivative(p), [guess * _TURN for guess in guesses]
+    waiting = set(range(len(roots)))
+    for _ in range(_ITERATIONS):
+        for i in sorted(waiting):
+            step = _newton_step(p, slope, roots[i])
+            others = sum(1.0 / (roots[i] - root) for root in roots if root != roots[i])
+            step /= (1.0 - step * others) or 1.0
+            roots[i] -= step
+            if abs(step) <= _CLOSE * abs(roots[i]):
+                waiting.discard(i)
+    return [complex(root.real) if abs(root.imag) <= _CLOSE * abs(root.real) else root for root in roots]
+
+
+def _newton_step(p: Polynomial, slope: Polynomial, z: complex) -> complex:
+    """p(z) / p'(z), rounded once; zero where the latter is."""
+    (a, one), (b, other) = z.real.as_integer_ratio(), z.imag.as_integer_ratio()
+    unit = max(one, other)  # both are powers of two
+    at = a * (unit // one), b * (unit // other), unit
+    (x, y), (u, v) = _value_times(p, *at), _value_times(slope, *at)
+    size = (u * u + v * v) * unit
+    return complex((x * u + y * v) / size, (y * u - x * v) / size) if size else 0j
+
+
+def _value_times(p: Polynomial, a: int, b: int, unit: int) -> tuple[int, int]:
+    """Real and imaginary part of `p` at (a + b j) / unit, times the unit to the degree of `p`."""
+    x, y, power = 0, 0, 1
+    for c in reversed(p):
+        x, y, power = x * a - y * b + c * power, x * b + y * a, power * unit
+    return x, y
 
 
 def _without_repeated_roots(p: Polynomial) -> Polynomial:

@@ -10,6 +10,7 @@ from inerter.figures.plots.axes import add_curve_legend, label_complex_plane, si
 from inerter.figures.plots.responses import Designs, designs_by_name
 from inerter.figures.style import colour, style_context
 from inerter.formatting import format_number
+from inerter.norms.exact import poles_exactly
 from inerter.systems.assemble import state_space
 from inerter.validation import checked
 
@@ -30,7 +31,7 @@ def plot_poles(designs: Designs, *, ax: Axes | None = None) -> Axes:
         named = designs_by_name(designs)
         reach = 0.0
         for number, (name, vehicle) in enumerate(named.items()):
-            poles = np.linalg.eigvals(state_space(vehicle).A)
+            poles = poles_exactly(state_space(vehicle))
             reach = max(reach, float(np.abs(poles.imag).max(initial=0.0)))
             ax.plot(poles.real, poles.imag, "x", color=colour(number), label=name, markersize=5)
         for ratio in (0.1, 0.3, 0.7) if reach else ():

@@ -327,3 +327,17 @@ class _Constant:
 
     def values(self, points: np.ndarray) -> np.ndarray:
         return points[:, 0]
+
+
+def test_an_equality_that_no_free_value_changes_keeps_no_search_from_the_optimum() -> None:
+    """The spring is fixed, so that the equality holds everywhere, to rounding, and has no slope."""
+    car = it.QuarterCar(250.0, 35.0, 150e3, it.Spring(20e3) | it.Damper(it.free(300.0, 8e3, name="c")))
+    free = it.optimise(car, J1, NORM)
+    grip = it.at_most(J3, 0.98 * it.evaluate(free.design, J3, NORM).value)
+    plain, fixed = (
+        it.optimise(car, J1, NORM, subject_to=limits)
+        for limits in ([grip], [it.equal(it.static_stiffness("strut"), 20e3), grip])
+    )
+    assert plain.value > 1.0001 * free.value
+    assert fixed.value == pytest.approx(plain.value, rel=1e-9)
+    assert (fixed.status.kind, fixed.n_converged) == (plain.status.kind, plain.n_converged)

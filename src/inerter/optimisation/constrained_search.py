@@ -78,8 +78,9 @@ class ConstrainedProblem:
                 off, gradients = off[top], gradients[top]
             level = np.full(off.size, 1.0 if self.objective is None else 0.0)
             if bound.limit.sense is Sense.EQUAL and self.objective is not None:
-                equal.append(off)
-                equal_slopes.append(gradients)
+                if np.any(gradients):  # one that no free value changes would make the equations of a step singular
+                    equal.append(off)
+                    equal_slopes.append(gradients)
                 continue
             signs = {Sense.AT_MOST: (1.0,), Sense.AT_LEAST: (-1.0,), Sense.EQUAL: (1.0, -1.0)}[bound.limit.sense]
             for sign in signs:

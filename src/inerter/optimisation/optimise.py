@@ -49,6 +49,8 @@ _APART = 0.05  # logarithmic distance above which two starts of such searches ar
 _QUICK = 0.1  # share of a search by simulation that its quick beginnings take
 _CONFIRMED = 1e-8  # relative difference up to which two codes have found the same value
 _LONELY = 1.0 / 6.0  # share of optima at which one start alone ends, from which on there may be many more of these
+_RIVAL = 1.2  # times the lowest value, above which ends tell nothing of optima near it
+_ALIKE, _ALIKE_PEAKS = 1e-5, 1e-3  # relative difference of ends at one optimum; of peaks only the best ones converge
 _DENSER, _MORE = 4, 4  # logarithm to base two of how much denser a sample then is, and how many more starts it has
 _AT_BOUND = 1e-6  # share of the logarithmic range within which a value lies on its bound
 
@@ -209,7 +211,7 @@ def _best(
     if quick:
         search = partial(_quick_search, vehicle, index, method, problem)
         found, first, evaluations = search(starts, seed)
-        if _has_many_optima(found):
+        if _has_many_optima(problem, found):
             for number in (1, 2):
                 further, _, tried = search(_MORE * starts, seed + number, _DENSER)
                 lowest.append(min((local.value for local in further if local.excess <= KEPT), default=np.inf))
@@ -409,17 +411,22 @@ def check_free(vehicle: Vehicle) -> dict[str, Free]:
     return free
 
 
-def _has_many_optima(found: Sequence[LocalOptimum]) -> bool:
+def _has_many_optima(problem: ConstrainedProblem, found: Sequence[LocalOptimum]) -> bool:
     """Whether many searches ended at optima where no other did, as on the ripples that a delay makes at low speed.
 
     Their share estimates the probability that a further search ends at an optimum that is not known yet (Good, 1953).
-    Where the optimum is flat, they end in several places with one value. Ends outside the limits are no optima; where
-    others are, a single one is alone too.
+    Where the optimum is flat, they end in several places with one value. Ends far above the lowest, or outside the
+    limits, do not count; where there are some outside, a single one within is alone too.
     """
-    logarithms = np.log([local.value for local in found if np.isfinite(local.value) and local.excess <= KEPT])
-    others = (np.abs(logarithms[:, None] - logarithms) < AGREEMENT).sum(axis=1) - 1
+    assert isinstance(problem.objective, Differentiable)
+    kept = np.log([local.value for local in found if np.isfinite(local.value) and local.excess <= KEPT])
+    if not kept.size:
+        return False
+    rivals = kept[kept < np.log(_RIVAL) + kept.min()]
+    is_peak = not problem.bounds and problem.objective.active(found[0].point) is not None
+    others = (np.abs(rivals[:, None] - rivals) < (_ALIKE_PEAKS if is_peak else _ALIKE)).sum(axis=1) - 1
     alone = int(np.sum(others == 0))
-    return alone >= max(_LONELY * logarithms.size, 2 if logarithms.size == len(found) else 1)
+    return bool(alone >= max(_LONELY * rivals.size, 2 if kept.size == len(found) else 1))
 
 
 def _many_optima_status(lowest: Sequence[float], unit: str) -> Status:

@@ -10,15 +10,8 @@ from inerter.errors import InerterError, WorkError
 from inerter.formatting import typeset
 from inerter.report.json_data import json_data
 
-_SENTENCES = (
-    "sentence",
-    "short",
-    "status",
-    "reason",
-    "remedy",
-    "findings",
-    "residual",
-)  # keys of sentences and lists of them
+# keys of sentences and lists of them
+_SENTENCES = ("sentence", "short", "status", "reason", "remedy", "findings", "residual")
 
 
 class Refusal(Exception):  # noqa: N818 -- an answer, not a fault

@@ -304,11 +304,10 @@ class CompiledNorm:
         return next((self.problem.excesses.get(source) for source in self.problem.sources), None)
 
     def _of_one_source(self, points: Array, weights: Array) -> tuple[Array, Array, Array, Array, Bools]:
-        """Norms over a source that excites all outputs, gradients of their sum with `weights`, norms for its filter
-        alone, and error estimates (designs,).
+        """Norms over a source that excites all outputs, their gradients, norms for its filter alone, error estimates.
 
-        Both norms are one where the filter is exact or modes do without it; elsewhere gradients are nan. The last tells
-        where modes do.
+        Gradients (designs, values) are those of the sum of the norms with `weights`. Both norms are one where the
+        filter is exact or modes do without it; elsewhere gradients are nan. The last tells where modes do.
         """
         if self._excess is None:
             norms, gradients, errors, by_modes = self._kernel_norms(points, weights)

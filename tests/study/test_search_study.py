@@ -369,6 +369,12 @@ def test_what_a_search_refuses(tmp_path: Path, settings: str, layouts: str, plac
     assert_refused(lambda: search_plans(study), place, words)
 
 
+def test_real_inerters_without_a_free_network_are_refused(tmp_path: Path) -> None:
+    settings = f'{ASK}\nreal_inerters = {{ friction = "10 N" }}'
+    asked = text(settings, 'k = "120 kN/m"\nc = { from = "1 kN s/m", to = "9 kN s/m" }', 'S1 = "k | c"')
+    assert_refused(lambda: load_text(tmp_path, asked), "study.real_inerters", ["no element is a free network"])
+
+
 def test_two_free_networks_are_refused(tmp_path: Path) -> None:
     elements = f"{ELEMENTS}\nmore = {{ network = 1, {KINDS} }}"
     study = load_text(tmp_path, text(elements=elements, layouts='S = "k | any | more"'))

@@ -18,6 +18,7 @@ from inerter.networks.elements import Damper, Element, Inerter, Spring
 from inerter.networks.free_network import FreeNetwork
 
 NETWORK = "network"
+EXAMPLE_LINE = 'any = { network = 4, springs = { from = "1 kN/m", to = "10 MN/m" } } in [elements]'
 _MOST = 7  # elements
 _FEW = 3  # elements of a network that a search finds in minutes
 _KINDS: dict[str, tuple[type[Element], str, str]] = {

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import InerterError, StudyError
+from inerter.files.common.free_networks import EXAMPLE_LINE
 from inerter.files.common.problem import at
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import some
@@ -117,8 +118,7 @@ def search_plans(study: Study) -> dict[tuple[str, str], SearchPlan]:
     """
     searched, problems = searched_layouts(study), []
     if not searched:
-        example = 'any = { network = 4, springs = { from = "1 kN/m", to = "10 MN/m" } } in [elements]'
-        problems.append(at(("layouts",), fault="no layout has a free network to search", expected=example))
+        problems.append(at(("layouts",), fault="no layout has a free network to search", expected=EXAMPLE_LINE))
     for attribute, key in _NOT_SEARCHED.items():
         if getattr(study, attribute):
             problems.append(at(("study", key), fault="a search over networks does not use it", expected=f"no {key}"))

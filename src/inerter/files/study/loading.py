@@ -9,6 +9,7 @@ from typing import Any
 
 from inerter.errors import StudyError
 from inerter.files.common.elements import free_networks_in, with_tied_values
+from inerter.files.common.free_networks import EXAMPLE_LINE
 from inerter.files.common.layouts import layout_problems
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.problems import refusal
@@ -151,6 +152,9 @@ def _setting_problems(study: Study, given: Collection[str]) -> Iterator[Problem]
     if "conditions" in given and not study.conditions:
         place, wanted = ("study", "conditions"), "sections [[conditions]], or no conditions in [study]"
         yield at(place, got=quote_value(study.over), fault="there are none", expected=wanted)
+    if study.real_inerters is not None and not study.free_networks:
+        wanted = f"{EXAMPLE_LINE}, or no real_inerters"
+        yield at(("study", "real_inerters"), fault="no element is a free network", expected=wanted)
     if study.baseline is not None and study.baseline not in study.layouts:
         known = some(study.layouts)
         hint = nearest(study.baseline, study.layouts)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
 LIMIT, RECORD_LIMIT = 10_000_000, 2_000_000_000  # bytes
-_EXTRA = {"starlette", "uvicorn", "anyio", "h11"}
+_EXTRA = ("starlette", "uvicorn", "pydantic")
 
 
 @checked(StudyError)
@@ -45,12 +46,9 @@ def serve(
     ...     print(error)
     no-such-study.toml: cannot be read (No such file or directory). Check the path.
     """
-    try:
-        running = import_module("inerter.app.running")
-    except ModuleNotFoundError as error:
-        if (error.name or "").split(".")[0] not in _EXTRA:
-            raise
+    if any(find_spec(name) is None for name in _EXTRA):
         raise StudyError(
             'The workbench needs libraries that are not installed: pip install "inerter[web]", then try again.'
-        ) from None
+        )
+    running = import_module("inerter.app.running")
     running.run(study, port=port, browser=browser, limits=(limit, record_limit), folder=folder, tell=tell)

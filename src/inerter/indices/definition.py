@@ -125,7 +125,7 @@ class IndexDefinition:
         """Index from r.m.s. values (..., outputs) and weights (outputs,)."""
         if self.combination is Combination.ROOT_OF_SQUARES:
             return np.asarray(np.sqrt(rms**2 @ weights**2))
-        return np.asarray(rms @ weights)
+        return np.asarray(rms.dot(weights))  # `@` takes thrice as long for few outputs
 
     def slopes(self, rms: Array, weights: Array) -> Array:
         """Derivatives of the combined index with respect to the r.m.s. values (outputs,)."""

@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from enum import Enum, auto
-from functools import partial
-from itertools import repeat
+from functools import lru_cache, partial
 from math import nan
 from typing import Any, Protocol, cast, runtime_checkable
 
@@ -329,11 +328,17 @@ def check_request(vehicle: Vehicle, index: IndexLike, method: object) -> list[Ex
 def _is_method(given: object) -> bool:
     if isinstance(given, type):
         return False
-    if all(map(hasattr, repeat(type(given)), _METHOD_NAMES)):  # which is found sooner than by the protocol
+    kind: type = type(given)
+    if _has_method_names(kind):  # which is found sooner than by the protocol
         return True
     if not isinstance(given, Method):  # perhaps written for the previous version
         adopt_renamed(given, sees="nonlinearity_support", words="description", searches="supports_optimisation")
     return isinstance(given, Method)
+
+
+@lru_cache(maxsize=64)
+def _has_method_names(kind: type) -> bool:
+    return all(hasattr(kind, name) for name in _METHOD_NAMES)
 
 
 def _check_names(index: ExcitedIndex) -> None:

@@ -122,7 +122,7 @@ def _merged_direct(system: LinearSystem) -> Matrix:
 
 def _drifting(A: Matrix) -> NDArray[np.bool_]:
     """States driven by the inputs alone, such as a tyre's share of the road profile."""
-    return np.asarray(~A.any(axis=1))
+    return np.asarray(~np.logical_or.reduce(A, axis=1))
 
 
 def _per_source(system: LinearSystem, B: Matrix) -> Matrix:
@@ -179,8 +179,9 @@ def _squares(system: LinearSystem, fine: ExtendedMatrices, pade_order: int | Non
         size, C = np.abs(P), fine_C.astype(float)
         weights = np.abs(C)
         seen = weights.dot(size)
-        squares = (fine_C.dot(P) * fine_C).sum(axis=1)
-        goals = np.where((seen * weights).sum(axis=1) > 0.0, squares, np.inf).astype(float)
+        squares = fine_C.dot(P).dot(fine_C.T).diagonal()
+        goals = squares.astype(float)
+        goals[seen.dot(weights.T).diagonal() == 0.0] = np.inf
         if not all(goal > 0.0 for goal in goals.tolist()):
             return None
         Q = [_adjoint(solver, A, row, drift) / goal for row, goal in zip(C, goals, strict=True)]
@@ -231,7 +232,7 @@ def _covariance(A: Matrix, fine: tuple[Matrix, Matrix], drift: _Drift | None) ->
         residual = _residual(fine_A, P, W)
         residual[w] = 8.0 * _EPS * covariance
     enters = noise.diagonal()
-    terms = 2.0 * (np.abs(A) * np.abs(P)).sum(axis=1) + enters
+    terms = 2.0 * np.abs(A).dot(np.abs(P)).diagonal() + enters
     unbalanced = (enters > 0.0) & (np.abs(residual.diagonal()) > _RESIDUAL * terms)
     return solver, P, residual, not np.count_nonzero(unbalanced)
 
@@ -374,7 +375,7 @@ def _refine(solver: _Solver, A: Matrix, W: Matrix) -> tuple[Matrix, Matrix]:
             break
         P, before = P + step, change
         residual = _residual(A, P, W)
-        if (steps <= _STEADY * variances).all():
+        if not np.count_nonzero(steps > _STEADY * variances):
             break
     return P, residual
 

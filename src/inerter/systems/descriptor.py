@@ -167,9 +167,9 @@ def close(
         raise DesignError(
             f"The value of {', '.join(missing)} is still free. Give numbers with with_values(...), or optimise first."
         )
-    d, p = descriptor, np.array([1.0, *[values[name] for name in descriptor.free]], dtype=np.longdouble)
-    S, right, G, direct = d.joined_stacks.at(p)
-    S_size, right_size, G_size, direct_size = d.joined_sizes.at(p.astype(float))
+    d, p = descriptor, np.array([1.0, *[values[name] for name in descriptor.free]], dtype=float)
+    S, right, G, direct = d.joined_stacks.at(p.astype(np.longdouble))
+    S_size, right_size, G_size, direct_size = d.joined_sizes.at(p)
     T, T_error = _solve_extended(S, right, S_size, right_size)
     whole = direct + G.dot(T)
     with np.errstate(invalid="ignore"):  # nothing times infinite: as unsure
@@ -206,7 +206,7 @@ def _solve_extended(S: Matrix, right: Matrix, S_size: Matrix, right_size: Matrix
     """S^-1 right in extended precision, and its error: infinite where S is singular to rounding."""
     if not S.size:  # which LAPACK refuses
         return right, np.zeros(right.shape)
-    size = np.abs(S).max(axis=1, keepdims=True, initial=0.0)
+    size = np.maximum.reduce(np.abs(S), axis=1, keepdims=True)
     scaled, right = S / size, right / size
     _, _, inverse, singular = scipy.linalg.lapack.dgesv(scaled.astype(float), _identity(len(S)))
     if singular:

@@ -131,7 +131,7 @@ class LinearSystem:
 
         Raises `LinearSystemError` if a number is not finite.
         """
-        if not math.isfinite(sum([np.vdot(matrix, matrix) for matrix in matrices])):
+        if not math.isfinite(np.vdot(origin.fine.values, origin.fine.values)):
             for name, matrix in zip("ABCD", matrices, strict=True):
                 _check_finite(name, matrix)
         found = object.__new__(LinearSystem)  # as a new one would check all names again

@@ -108,7 +108,7 @@ def _key(network: Network, values: Values) -> Hashable:
     if not isinstance(network, Element) or not network.plain or isinstance(value := network.value, Tied):
         raise _DependsOnValuesError
     values.append(value)
-    more = [getattr(network, field.name) for field in network.more]
+    more = [getattr(network, field.name) for field in network.more] if network.more else ()
     return (type(network), network.name, _free_name(value), *more)
 
 

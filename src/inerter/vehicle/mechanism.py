@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import chain
 
 from inerter.deprecation import RenamedAttribute, renamed_keywords
@@ -316,7 +316,7 @@ class Mechanism:
         """Values that are no numbers: those of networks in order of appearance, then masses."""
         values = [element.value for mount in self.mounts() for element in mount.network.elements()]
         values += [coordinate.inertia for coordinate in self.coordinates]
-        return [value for value in values if isinstance(value, Free | Tied)]
+        return [value for value in values if type(value) is not float and isinstance(value, Free | Tied)]
 
     def free_values(self) -> dict[str, Free]:
         """Free values by name: those of networks in order of appearance, then masses."""
@@ -410,6 +410,9 @@ def _check_measures(measures: object) -> None:
             raise MechanismError(f"A measure must be OutputWeight(output name, number), got {output!r}.")
 
 
+_is_name = lru_cache(maxsize=1024)(NAME.fullmatch)
+
+
 def _check_names(mechanism: Mechanism) -> None:
     seen: set[str] = set()
     parts: tuple[Coordinate | Strut | Tyre | RoadInput | Force | TrackedPoint, ...] = (
@@ -422,7 +425,7 @@ def _check_names(mechanism: Mechanism) -> None:
     )
     for part in parts:
         kind = type(part).__name__
-        if not isinstance(part.name, str) or not NAME.fullmatch(part.name):
+        if not isinstance(part.name, str) or not _is_name(part.name):
             raise MechanismError(
                 f"The name of a {kind} must be a letter followed by letters, digits and underscores, got {part.name!r}."
             )
@@ -462,7 +465,7 @@ def _check_ports(mechanism: Mechanism) -> None:
     ports += [("force", f.name, f.port, coordinates) for f in mechanism.forces]
     ports += [("point", p.name, p.port, coordinates) for p in mechanism.points]
     for kind, of, port, may_hold in ports:
-        if not isinstance(port, Mapping):
+        if type(port) is not dict and not isinstance(port, Mapping):
             raise MechanismError(
                 f"The port of {kind} {of!r} must map coordinates to lever arms, as {{'body': 1.0}}; got {port!r}."
             )
@@ -475,9 +478,6 @@ def _check_ports(mechanism: Mechanism) -> None:
                     f"The lever arm of {name!r} in {kind} {of!r} must be a finite number, got {lever!r}."
                 )
     _check_levers([(kind, of, port) for kind, of, port, _ in ports if of != GROUND_ACCELERATION])
-    for strut in mechanism.struts:
-        if _travel(strut) == {}:
-            raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port, so its travel is zero.")
     for tyre in mechanism.tyres:
         if tyre.road not in roads:
             known = ", ".join(sorted(roads)) or "none"
@@ -489,6 +489,9 @@ def _check_levers(ports: Sequence[tuple[str, str, Port]]) -> None:
 
     It is compared with those of struts and tyres, as forces and points have no part in the dependence of travels.
     """
+    sizes = [abs(lever) for _, _, port in ports for lever in port.values() if lever]
+    if not sizes or min(sizes) >= _SHORTEST * max(sizes):  # as nearly always
+        return
     longest: dict[str, float] = {}
     for kind, _, port in ports:
         if kind in ("strut", "tyre"):
@@ -534,8 +537,12 @@ def _travel(strut: Strut) -> dict[str, float]:
 
 
 def _check_attached(mechanism: Mechanism) -> None:
-    held = {name for strut in mechanism.struts for name in _travel(strut)}
-    held |= {name for tyre in mechanism.tyres for name, lever in tyre.port.items() if lever != 0.0}
+    held = {name for tyre in mechanism.tyres for name, lever in tyre.port.items() if lever != 0.0}
+    for strut in mechanism.struts:
+        travel = _travel(strut)
+        if not travel:
+            raise MechanismError(f"Both ends of strut {strut.name!r} are at the same port, so its travel is zero.")
+        held.update(travel)
     for coordinate in mechanism.coordinates:
         if coordinate.name not in held:
             raise MechanismError(

@@ -28,6 +28,7 @@ _LEAST_PERCENT = 1e-4
 _TENTH = 0.1 * (1.0 + 1e-9)
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
+_NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.]*[A-Za-z_\d])")  # not in a name, such as k1
 _POWER = re.compile(r"\^(-?\d)")
 _MINUS = re.compile(r"(?<![^ (\[])-(?=[\d.]|inf\b)")  # before a number, not within a word or a date
 _MICRO = re.compile(r"(?:(?<=\d )|(?<=in )|(?<=[\[(]))u(?=[ms]\b)")
@@ -405,6 +406,26 @@ def format_some(words: Iterable[str], most: int) -> str:
     known = list(words)
     more = f" and {len(known) - most} more" if len(known) > most else ""
     return f"{', '.join(known[:most])}{more}"
+
+
+def merge_alike(texts: Sequence[str]) -> list[tuple[str, list[int]]]:
+    """Texts that differ in their numbers alone as one text with their ranges, and the places of those texts.
+
+    >>> merge_alike(["at most 5.4 % of k1", "none", "at most 3.9 % of k1"])
+    [('at most 3.9 to 5.4 % of k1', [0, 2]), ('none', [1])]
+    """
+    alike: dict[tuple[str, ...], list[int]] = {}
+    parts = [_NUMBER.split(text) for text in texts]  # words and numbers in turn
+    for place, each in enumerate(parts):
+        alike.setdefault(tuple(each[::2]), []).append(place)
+    merged = []
+    for places in alike.values():
+        whole = list(parts[places[0]])
+        for i in range(1, len(whole), 2):
+            ends = sorted({parts[place][i] for place in places}, key=float)
+            whole[i] = ends[0] if len(ends) == 1 else f"{ends[0]} to {ends[-1]}"
+        merged.append(("".join(whole), places))
+    return merged
 
 
 def format_count(number: int, several: str) -> str:

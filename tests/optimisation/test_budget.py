@@ -506,3 +506,28 @@ def test_a_baseline_in_which_the_name_is_ambiguous_is_refused():
     baseline = paper_quarter_car(Spring(100e3) | Damper(5e3) - Spring(3e5))
     with pytest.raises(DesignError, match="'k' is ambiguous: "):
         break_even(conventional(), baseline, J1, parameter="k", method=Norm())
+
+
+def truck(strut: it.Network) -> it.QuarterCar:
+    return it.QuarterCar(sprung_mass=4500.0, unsprung_mass=450.0, tyre_stiffness=2e6, strut=strut)
+
+
+TRUCK = truck(Spring(400e3) | Damper(20e3))
+IN_SERIES = truck(Spring(400e3) | Damper(18e3) - (Inerter(2000.0) | Friction(200.0)))
+DAMPED = truck(Spring(400e3) | (Inerter(2000.0) | Friction(200.0)) - (Spring(142e3) | Damper(12.7e3)))
+
+
+def test_worse_at_every_value_is_certain_where_no_error_can_change_it():
+    """Values that are inaccurate at some frictions, but worse by more than their errors; simulation agrees there."""
+    found = break_even(DAMPED, TRUCK, J3, parameter="friction", method=Linearisation())
+    assert found.status.kind is StatusKind.UNBOUNDED
+    assert "better for no friction" in found.status.message
+    for friction in (200.0, 5e3):
+        design = budget.with_element(DAMPED, "friction", friction)
+        assert it.compare(design, TRUCK, J3, ExpectedValue(realisations=4)).relative.interval[0] > 0.0
+
+
+def test_values_that_differ_by_less_than_their_errors_leave_it_open():
+    found = break_even(IN_SERIES, TRUCK, J1, parameter="friction", method=Linearisation())
+    assert found.status.kind is StatusKind.INACCURATE
+    assert "more than they differ at some values of friction. By these values the design is better" in str(found.status)

@@ -46,6 +46,12 @@ class Crossing:
     status: Status = OK
     error_bound: float = np.nan  # relative, sampling apart
 
+    def may_be_at(self, logarithm: float) -> bool:
+        """Whether its errors allow the crossing to be at that logarithm of the parameter."""
+        reach = math.log(self.interval[1] / self.value)
+        sampling = 0.0 if math.isnan(reach) else reach  # nan: the method has no standard error
+        return abs(logarithm - math.log(self.value)) <= math.log1p(self.error_bound) + sampling
+
 
 @dataclass(frozen=True)
 class BudgetRange:
@@ -61,11 +67,12 @@ class BreakEven:
     """The values of a parameter for which a design has a lower index than a baseline.
 
     `value` is the end of that range: the largest friction or gap, the smallest stiffness, damping or inertance. It is
-    nan, with the reason in `status`, where the design is better (or worse) at every value between `bounds`. All are in
-    SI units; `interval` is the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are
-    nan for a method that models friction and has none. `error_bound` is the largest relative error, sampling apart,
-    that the error bounds of the two index values allow. `status` is no better than the worst of the compared estimates,
-    and ok means that `error_bound` is no larger than 10 %: it is "inaccurate" by a method that names no error sources.
+    nan, with the reason in `status`, where the design is better (or worse) at every value between `bounds`: "unbounded"
+    where no error of the values compared can change that, "inaccurate" otherwise. All are in SI units; `interval` is
+    the 95 % confidence interval, symmetric in the logarithm. Standard errors and intervals are nan for a method that
+    models friction and has none. `error_bound` is the largest relative error, sampling apart, that the error bounds of
+    the two index values allow. `status` with a value is no better than the worst of the compared estimates, and ok
+    means that `error_bound` is no larger than 10 %: it is "inaccurate" by a method that names no error sources.
 
     >>> import inerter as it
     >>> good = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0, name="valve"))
@@ -196,6 +203,13 @@ def _budget(
     end = None if not ends else ends[0] if wanted == "below" else ends[-1]
     ranges = _ranges(grid, gaps, crossings, between)
     asked = [sampled[at].status for at in grid if end is None or is_within_range(at, end, step)]
+    clause = better_clause(ranges, parameter, chosen[0].unit)
+    if end is None:
+        apart = [known.get(at, sampled[at]) for at in grid if not any(c.may_be_at(at) for c in crossings)]
+        located = worst_of([c.status for c in crossings])
+        status = _status_without_end(apart, located, worst_of([*asked, located]), parameter, clause)
+    else:
+        status = worst_of((*asked, end.status))
     return BreakEven(
         parameter=parameter,
         unit=chosen[0].unit,
@@ -205,7 +219,7 @@ def _budget(
         crossings=crossings,
         ranges=ranges,
         bounds=between,
-        status=_status(ranges, end, [*asked, *(() if end is None else (end.status,))], parameter, chosen[0].unit),
+        status=status,
         evaluations=len(sampled),
         error_bound=np.nan if end is None else end.error_bound,
     )
@@ -314,8 +328,8 @@ def _crossing(
     difference(root)
     here = known[root]
     found = here.difference
-    off = sum(abs(one.value) * one.error_bound for one in (here.first, here.second))
-    error, reach, most = (part / slope if slope else np.inf for part in (found.standard_error, found.reach, off))
+    parts = (found.standard_error, found.reach, _off(here))
+    error, reach, most = (part / slope if slope else np.inf for part in parts)
     if not exact and here.first.standard_error is None and here.second.standard_error is None:
         error = reach = np.nan  # there is none
     value = float(np.exp(root))
@@ -336,13 +350,17 @@ def _within_promise(bound: float, here: Comparison, parameter: str) -> Status:
             "break-even value with an unknown error: the values compared have no error bound, as the method names no "
             "error sources",
         )
-    first, second = (format_share(one.error_bound, 2) for one in (here.first, here.second))
     size = f"with a relative error of up to {format_share(bound, 2)}, more than {format_share(_PROMISE, 2)}"
     return Status(
         StatusKind.INACCURATE,
-        f"break-even value {size if bound < _UNKNOWN else 'uncertain by more than a factor of 10'}: the values "
-        f"compared may be off by {first} and {second}, and change little with {parameter}",
+        f"break-even value {size if bound < _UNKNOWN else 'uncertain by more than a factor of 10'}: "
+        f"{_within_errors(here)}, and change little with {parameter}",
     )
+
+
+def _within_errors(one: Comparison) -> str:
+    first, second = (format_share(each.error_bound, 2) for each in (one.first, one.second))
+    return f"the values compared may be off by {first} and {second}"
 
 
 def _ranges(
@@ -370,16 +388,27 @@ def is_within_range(at: float, end: Crossing, step: float) -> bool:
     return beyond <= step if end.better == "below" else beyond >= -step
 
 
-def _status(
-    ranges: Sequence[BudgetRange], end: Crossing | None, statuses: Sequence[Status], parameter: str, unit: str
+def _status_without_end(
+    each: Sequence[Comparison], located: Status, worst: Status, parameter: str, clause: str
 ) -> Status:
-    """The worst status of all compared estimates; without an end, the values for which the design is better."""
-    bad, said = worst_of(statuses), better_clause(ranges, parameter, unit)
-    if not bad.ok:
-        is_compared = any(one.better is not None for one in ranges)
-        tentative = f". Nevertheless, {said}" if end is None and is_compared else ""
-        return Status(bad.kind, f"{bad.message.rstrip('.')}{tentative}")
-    return OK if end is not None else Status(StatusKind.UNBOUNDED, said)
+    """Status without a break-even value: "unbounded" where no error of the values compared can change which is lower.
+
+    Otherwise the worst status of those values, "inaccurate" at least. `each` are the values apart from other crossings,
+    of which `located` is the status.
+    """
+    margins = [abs(one.difference.value) - one.difference.reach - _off(one) for one in each]
+    if np.min(margins, initial=np.inf) > 0.0 and located.ok:  # not of nan
+        return Status(StatusKind.UNBOUNDED, clause)
+    if worst.ok:
+        doubt = _within_errors(each[int(np.argmin(margins))])
+        worst = Status(StatusKind.INACCURATE, f"{doubt}, more than they differ at some values of {parameter}")
+    has_values = any(math.isfinite(one.difference.value) for one in each)
+    return Status(worst.kind, f"{worst.message.rstrip('.')}{f'. By these values {clause}' if has_values else ''}")
+
+
+def _off(one: Comparison) -> float:
+    """What the error bounds of two values allow their difference to be off."""
+    return sum(abs(each.value) * each.error_bound for each in (one.first, one.second))
 
 
 def better_clause(

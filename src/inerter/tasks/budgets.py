@@ -16,7 +16,7 @@ from inerter.files.study.conditions import MOST_LISTED, condition_labels
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
-from inerter.formatting import capital, format_list, format_quantity
+from inerter.formatting import capital, format_list, format_quantity, merge_alike
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Method
 from inerter.methods.registry import brief_words_of, with_decisive_method
@@ -265,7 +265,7 @@ def _remark(found: BudgetAnswer) -> str:
 def _alike(
     data: xr.Dataset, found: Sequence[BudgetAnswer], said: Callable[[BudgetAnswer], str]
 ) -> Iterator[tuple[str, str]]:
-    """Distinct sentences, each with the titles of the indices to which it applies."""
-    for message in dict.fromkeys(said(one).rstrip(".") for one in found):
-        if message:
-            yield message, format_list([index_title(data, o.index) for o in found if said(o).rstrip(".") == message])
+    """Sentences that differ in more than their numbers, each with the titles of the indices to which it applies."""
+    told = [one for one in found if said(one)]
+    for message, places in merge_alike([said(one).rstrip(".") for one in told]):
+        yield message, format_list([index_title(data, told[place].index) for place in places])

@@ -57,6 +57,13 @@ def test_designs_of_equal_values_share_a_system_and_no_others_do():
         assert piecewise(other).mechanism == other.mechanism()
 
 
+def test_designs_of_a_layout_share_its_kinematics_and_have_their_own_elements():
+    systems = [piecewise(car(damping)) for damping in (2000.0, 4000.0)]
+    assert systems[0].kinematics is systems[1].kinematics
+    dampings = [[b.element.damping for b in system.graph.branches if b.label == "c"] for system in systems]
+    assert dampings == [[2000.0], [4000.0]]
+
+
 def test_a_design_that_is_refused_is_refused_again():
     free = it.QuarterCar(181.75, 25.0, 1.2e5, it.Spring(1.2e5) | it.Damper(it.free(1.0, 2.0, name="c")))
     for _ in range(2):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
 from math import prod
@@ -277,7 +277,7 @@ def start(
         record=_record(sizes, state, table.samples if keep else 0),
         account=_account(system, account),
         known=machine.known,
-        count=machine.count,
+        count=int(np.count_nonzero(machine.modes.number >= 0)),
     )
     if after is not None and after.mechanism == system.mechanism:
         integration.go_on_from(after)
@@ -302,7 +302,7 @@ def _parts_of_a_step(begun: Integration) -> int:
     if begun.count == 0 and begun.system.nonlinear:
         reached = np.isfinite(begun.mechanics.limits)
         begun.build(np.where(reached[:, 1], 1, np.where(reached[:, 0], -1, 0)))  # all slip, or touch
-    fastest = begun.table.step / float(begun.modes.reach[: begun.count].min(initial=np.inf))
+    fastest = begun.table.step / min(begun.modes.reach[: begun.count].tolist(), default=math.inf)
     parts = math.ceil(fastest) if fastest > _FAST else 1
     return parts if parts <= _MOST_PARTS and parts * begun.table.value.size <= _MOST_ENTRIES else 1
 
@@ -316,7 +316,6 @@ class _Machine:
     used: NDArray[np.int64]
     modes: Modes  # for integrations to copy, unless they are all: each adds its own
     known: dict[Any, Matrix]
-    count: int  # modes that are built
 
 
 @lru_cache(maxsize=_KEPT)
@@ -334,12 +333,12 @@ def _machine(
         march_of(sizes.states, tuple(used.tolist()), *shape[2:]),
         _modes(mechanics, lines + series_lines(sizes.states, sizes.inputs), followed + swaying),
     )
-    machine, count = _Machine(mechanics, march, used, modes, {}, 0), 0
-    switch = bool(np.all(np.isfinite(limits)) and np.all(limits[:, 0] < limits[:, 1]))
+    machine, count = _Machine(mechanics, march, used, modes, {}), 0
+    switch = all(-math.inf < lower < upper < math.inf for lower, upper in limits.tolist())
     if switch and 1 <= sizes.elements <= (_MET_BY_ROADS if outputs else 1):
         for states in product((0, 1, -1), repeat=sizes.elements):
             count += _add_mode(machine, modes, count, np.array(states, dtype=np.int64), step)
-    return replace(machine, count=count)
+    return machine
 
 
 def _add_mode(machine: _Machine | Integration, modes: Modes, m: int, states: NDArray[np.int64], step: float) -> bool:
@@ -356,7 +355,7 @@ def _add_mode(machine: _Machine | Integration, modes: Modes, m: int, states: NDA
 
 def own_modes(modes: Modes) -> Modes:
     """Modes that can be added to; the same if there are no others."""
-    if np.all(modes.number >= 0):
+    if not np.count_nonzero(modes.number < 0):
         return modes
     steps = aligned_zeros(*modes.steps.shape)
     steps[:] = modes.steps
@@ -462,9 +461,9 @@ def _used_knot_numbers(
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     mechanics = system.mechanics
     heights = (
-        any(on_u[:roads].any() for _, on_u, _ in rows)
-        or mechanics.balance[:, na + nw + n : na + nw + n + roads].any()
-        or mechanics.lengths[:, n - na :].any()
+        any(np.count_nonzero(on_u[:roads]) for _, on_u, _ in rows)
+        or np.count_nonzero(mechanics.balance[:, na + nw + n : na + nw + n + roads])
+        or np.count_nonzero(mechanics.lengths[:, n - na :])
     )
     numbers = range(4 * len(moving))
     used = [i for i in numbers if moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -15,7 +14,6 @@ from inerter.systems.piecewise import PiecewiseSystem
 from inerter.validation import real_numbers
 
 Matrix = NDArray[np.float64]
-_KEPT = 16  # systems
 Initial = Literal["rest", "preload", "periodic"] | Trajectory | Matrix
 
 
@@ -34,7 +32,7 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
             raise SimulationError(
                 f'The initial state is "rest", "preload", "periodic", a trajectory or an array, got {initial!r}.'
             )
-        force = inputs[roads:] if initial == "preload" else np.zeros_like(inputs[roads:])
+        force = inputs[roads:] if initial == "preload" else np.zeros(inputs.size - roads)
         moving = np.zeros(roads) if rates is None else rates[:roads]
         given = np.concatenate([_starting_velocities(system, moving), _positions(system, inputs[:roads], force)])
     else:
@@ -42,7 +40,7 @@ def initial_state(system: PiecewiseSystem, inputs: Matrix, initial: Initial, rat
         if numbers is None:
             raise SimulationError(f"The initial state is an array of {n} numbers, got {initial!r}.")
         given = np.array(numbers)
-    if given.shape != (n,) or not np.all(np.isfinite(given)):
+    if given.shape != (n,) or np.count_nonzero(np.isfinite(given)) < n:
         raise SimulationError(
             f"The initial state needs {n} finite numbers ({', '.join(system.states)}), got {given.tolist()}."
         )
@@ -60,34 +58,25 @@ def _starting_velocities(system: PiecewiseSystem, rates: Matrix) -> Matrix:
 
     What inertia alone ties to a road goes with it at once: of all motions a blow leaves that of least kinetic energy.
     """
-    given = system.kinetic_road @ rates if rates.any() else rates
-    if not given.any():
+    given = system.kinetic_road.dot(rates)
+    if not np.count_nonzero(given):
         return np.zeros(system.kinetic.shape[1])
     momenta = system.kinetic.T * system.inertia
     return np.asarray(-np.linalg.solve(momenta @ system.kinetic, momenta @ given))
 
 
-@lru_cache(maxsize=_KEPT)
 def may_lie_unstrained(system: PiecewiseSystem) -> bool:
     """Whether nothing that switches has a force, or an elongation, at any rest."""
-    limits = system.mechanics.limits
-    return bool(np.all((limits[:, 0] <= 0.0) & (limits[:, 1] >= 0.0)))
-
-
-@lru_cache(maxsize=_KEPT)
-def _are_elongations(system: PiecewiseSystem) -> bool:
-    """Whether every position is the elongation of an element."""
-    own = np.array(system.kinematics.places.own)
-    return bool(np.count_nonzero(own >= 0) == system.positions.shape[0])
+    return all(lower <= 0.0 <= upper for lower, upper in system.mechanics.limits.tolist())
 
 
 def _positions(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:
     """Positions at rest; those that are elongations have none of the rounding of heights."""
-    if may_lie_unstrained(system) and not force.any():
-        is_flat = not road.any() or (_are_elongations(system) and not (system.elongations[1] @ road).any())
-        if is_flat:
+    if may_lie_unstrained(system) and not np.count_nonzero(force):
+        strained = system.elongations[1].dot(road) if system.kinematics.are_elongations else road
+        if not np.count_nonzero(strained):
             return np.zeros(system.positions.shape[0])
-    own, found = np.array(system.kinematics.places.own), equilibrium(system, road, force)
+    own, found = system.kinematics.own_elongations, equilibrium(system, road, force)
     g = system.positions @ found.displacement + system.heights @ road
     g[own[own >= 0]] = found.elongation[own >= 0]
     return np.asarray(g)

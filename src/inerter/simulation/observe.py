@@ -80,7 +80,7 @@ def _states(integration: Integration, events: NDArray[Any]) -> dict[str, str]:
     found: dict[str, str] = {}
     first = integration.modes.state[integration.record.visited[0]]
     for e, elements in enumerate(_element_labels(integration.system)):
-        own = np.flatnonzero(events["element"] == e)[:1]
+        own = (events["element"] == e).nonzero()[0][:1]
         state = int(events["before"][own[0]] if own.size else first[e])
         found |= {label: names[state] for label, names in elements}
     return found

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -61,6 +61,16 @@ class Kinematics:
     moves_elements: tuple[bool, ...]
     weighs: bool  # whether R and V depend on values of inertia, as where a node is between two inerters alone
 
+    @cached_property
+    def own_elongations(self) -> NDArray[np.int64]:
+        """For each branch the position that is its own elongation, or -1."""
+        return np.array(self.places.own, dtype=np.int64)
+
+    @cached_property
+    def are_elongations(self) -> bool:
+        """Whether every position is the elongation of an element."""
+        return bool(np.count_nonzero(self.own_elongations >= 0) == self.places.nodes.shape[0])
+
 
 @dataclass(frozen=True)
 class _Layout:
@@ -71,15 +81,13 @@ class _Layout:
 
 
 def kinematics(mechanism: Mechanism) -> Kinematics:
-    """The kinematics of a mechanism without free values, with its own elements in the graph.
+    """The kinematics of a mechanism without free values; its graph may have the elements of another of its layout.
 
     Raises `MechanismError` as `piecewise` does.
     """
     layout = _Layout(_shape_of(mechanism), mechanism)
     known = _cached_analysis(layout)
-    if known.weighs:
-        return _analyse_layout(layout)
-    return replace(known, graph=with_elements(known.graph, list(mechanism.elements())))
+    return _analyse_layout(layout) if known.weighs else known
 
 
 def with_elements(graph: Graph, elements: Sequence[Element]) -> Graph:
@@ -107,7 +115,7 @@ def _shape_of(mechanism: Mechanism) -> tuple[Any, ...]:
 
 def _network_shape(network: Network) -> tuple[Any, ...]:
     if isinstance(network, Element):
-        return type(network), network.name, network.role
+        return type(network), network.name, network.role if network.switch else None
     assert isinstance(network, CombinedNetwork)
     return (type(network), network.name, *map(_network_shape, network.parts))
 

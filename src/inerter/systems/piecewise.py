@@ -6,7 +6,7 @@ layout; what a mode makes of it is `kernels.modes`.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
@@ -136,7 +136,7 @@ def _assemble_once(design: _Design) -> tuple[Mechanism, PiecewiseSystem]:
 def _assemble(mechanism: Mechanism) -> PiecewiseSystem:
     switched = switching(mechanism)
     check_values(switched)
-    return _system(switched, kinematics(switched))
+    return _system(switched, kinematics(switched), list(switched.elements()))
 
 
 def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) -> PiecewiseSystem:
@@ -178,14 +178,13 @@ def with_element_values(system: PiecewiseSystem, values: Mapping[str, float]) ->
         raise DesignError("Moving ground acts on every mass. Change the masses first, then use piecewise(...).")
     mechanism = copy(system.mechanism)  # which was checked when it was made
     object.__setattr__(mechanism, "coordinates", tuple(inertias.values()))
-    known = system.kinematics
-    return _system(mechanism, replace(known, graph=with_elements(known.graph, list(elements.values()))))
+    return _system(mechanism, system.kinematics, list(elements.values()))
 
 
-def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
-    graph, places = known.graph, known.places
-    coefficients = [graph.branches[i].element.coefficient for i in known.acting]
-    values = np.array([*(coordinate.coefficient for coordinate in mechanism.masses.values()), *coefficients])
+def _system(mechanism: Mechanism, known: Kinematics, elements: Sequence[Element]) -> PiecewiseSystem:
+    graph, places = with_elements(known.graph, elements), known.places
+    masses = [coordinate.coefficient for coordinate in mechanism.masses.values()]
+    values = np.array([*masses, *(elements[i].coefficient for i in known.acting)])
     inertia = values[: len(known.kinetic)]
     _check_inertia(known.kinetic, inertia)
     terms, without = known.balance
@@ -194,7 +193,7 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
         kinematics=known,
         graph=graph,
         mechanics=ConstantMatrices(
-            balance=(values @ terms).reshape(without.shape) + without,
+            balance=values.dot(terms).reshape(without.shape) + without,
             rates=known.moving,
             lengths=known.lengths,
             elements=known.elements,
@@ -218,7 +217,8 @@ def _system(mechanism: Mechanism, known: Kinematics) -> PiecewiseSystem:
 
 def _check_inertia(kinetic: Matrix, inertia: Matrix) -> None:
     """Raises `MechanismError` if an inertia is lost to rounding against another one that moves with it."""
-    if inertia.size and inertia.max() > _LOST * inertia.min():
+    sizes = inertia.tolist()
+    if sizes and max(sizes) > _LOST * min(sizes):
         M = kinetic.T @ (inertia[:, None] * kinetic)
         size = 1.0 / np.sqrt(np.diag(M))
         if np.linalg.eigvalsh(M * size * size[:, None])[0] < 1.0 / _LOST:

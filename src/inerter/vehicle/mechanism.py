@@ -512,22 +512,26 @@ def check_values(mechanism: Mechanism) -> None:
     """Raise `MechanismError` for an element or inertia too small or large for double precision."""
     for mount in mechanism.mounts():
         for element in mount.network.elements():
-            if not isinstance(element.value, Free | Tied):
+            if not (isinstance(element.value, Free | Tied) or _has_size(element.value)):
                 large = "Replace such a large element by a rigid joint."
-                _check_size(f"value of {element.label!r}", element.value, element.unit, "element", large)
+                raise _size_error(f"value of {element.label!r}", element.value, element.unit, "element", large)
     for coordinate in mechanism.coordinates:
-        if not isinstance(coordinate.inertia, Free):
+        if not (isinstance(coordinate.inertia, Free) or _has_size(coordinate.inertia)):
             large = "Fix such a heavy body to the ground."
-            _check_size(f"inertia of {coordinate.name!r}", coordinate.inertia, coordinate.unit, "inertia", large)
+            raise _size_error(f"inertia of {coordinate.name!r}", coordinate.inertia, coordinate.unit, "inertia", large)
 
 
-def _check_size(what: str, value: float, unit: str, kind: str, if_large: str) -> None:
-    if value != 0.0 and not SMALLEST <= value <= LARGEST:
-        remedy = f"Omit such a small {kind}." if value < SMALLEST else if_large
-        raise MechanismError(
-            f"The {what} is {format_quantity(value, unit, 6)}; double precision supports "
-            f"{format_range(SMALLEST, LARGEST, unit)}. {remedy}"
-        )
+def _has_size(value: float) -> bool:
+    """Whether a value is zero, or of a size that double precision supports."""
+    return value == 0.0 or SMALLEST <= value <= LARGEST
+
+
+def _size_error(what: str, value: float, unit: str, kind: str, if_large: str) -> MechanismError:
+    remedy = f"Omit such a small {kind}." if value < SMALLEST else if_large
+    return MechanismError(
+        f"The {what} is {format_quantity(value, unit, 6)}; double precision supports "
+        f"{format_range(SMALLEST, LARGEST, unit)}. {remedy}"
+    )
 
 
 def _travel(strut: Strut) -> dict[str, float]:

@@ -142,13 +142,14 @@ def _rows_of(integration: Integration, wanted: Output, at: slice | NDArray[np.in
     maps = integration.modes.maps[: integration.count]
     weights = np.concatenate([on_x, on_eta])
     rows = np.concatenate([maps[:, integration.projected_state], maps[:, integration.eta]], axis=1)
-    direct = np.concatenate([np.zeros(n), on_u, np.zeros(1)])
+    direct = np.zeros(n + nu + 1)
+    direct[n:-1] = on_u
     over = np.einsum("i,mij->mj", weights, rows) + direct
     terms = np.einsum("i,mij->mj", np.abs(weights), np.abs(rows)) + np.abs(direct)
     over[np.abs(over) < _ROUNDING * terms] = 0.0  # what sticks does not move
     channel = [*range(roads)] * 3 + [*range(roads, nu - 2 * roads)]
-    used = [i for i in range(nu) if np.any(over[:, n + i]) and table.moving[channel[i]]]
-    over = np.ascontiguousarray(np.concatenate([over[:, :n], over[:, [n + i for i in used]], over[:, -1:]], axis=1))
+    used = [i for i in np.logical_or.reduce(over[:, n:-1]).nonzero()[0].tolist() if table.moving[channel[i]]]
+    over = np.ascontiguousarray(over[:, [*range(n), *(n + i for i in used), -1]])
     inputs = np.empty((table.sampled[at].size, len(used)))
     for column, i in enumerate(used):
         inputs[:, column] = sampled_input(table, i // roads if i < 3 * roads else 0, channel[i], at)

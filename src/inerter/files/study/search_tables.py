@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from inerter.errors import StatusKind
 from inerter.files.study.conditions import condition_labels
 from inerter.files.study.summary import bounds_text
-from inerter.formatting import capital, format_percent, format_quantity, label_with_unit
+from inerter.formatting import capital, format_percent, format_percent_size, format_quantity, label_with_unit
 from inerter.networks.elements import ELEMENT_TYPES, Inerter
 from inerter.table import Column, Content, Quantity, Row, Table, cells, columns
 
@@ -223,7 +223,8 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
         unit = one.result.unit
         before, after = real_gains(one, each)
         bound, retained = one.real_gain_bound(each), 100.0 / before if before > 0.0 else nan
-        gains = [_gain_text(before), _gain_text(after, bound), _gain_text(retained * after, retained * bound)]
+        share = None if isnan(retained * after) else format_percent_size(retained * after, bound=retained * bound)
+        gains = [_gain_text(before), _gain_text(after, bound), share]
         content = [
             each.network,
             *([each.method] if several else []),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,6 +29,8 @@ from inerter.methods.statistical_linearisation import StatisticalLinearisation
 from inerter.networks.elements import Free
 from inerter.optimisation.budget import break_even
 from inerter.optimisation.optimise import optimise
+from inerter.report.tables import trade_off_tables
+from inerter.report.verdicts import study_decision
 from inerter.table import csv_rows, csv_text
 from inerter.tasks.budgets import BudgetAnswer, Budgets
 
@@ -114,6 +117,24 @@ def test_bounds_of_values_and_of_improvements_are_in_the_dataset(study: Study) -
             for b in (-1.0, 1.0)
         ]
         assert here.improvement_bound.item() == pytest.approx(max(map(abs, off)))
+
+
+def test_other_indices_of_a_design_have_standard_errors_of_their_own(study: Study, tmp_path: Path) -> None:
+    """Those of an evaluation; table and verdict have them, the latter as those of two independent values."""
+    asked = replace(study, evaluate=("expected-value",), indices=("J1", "J3"))
+    found = run_study(asked, tmp_path / "out").data
+    errors = {}
+    for name in ("usual", "serial"):
+        row = found.sel({"layout": name, "index": "J1", "method": "expected-value"})
+        design = study.design(name).with_values({"c": row.sel(parameter="c").parameter_value.item()})
+        errors[name] = evaluate(design, study.index("J3"), ROADS).standard_error or 0.0
+        assert row.sel(other="J3")["other.standard_error"].item() == pytest.approx(errors[name], rel=1e-9)
+    table = trade_off_tables(found)[0]
+    assert all("+-" in str(cell.content) for row in table.rows[:2] for cell in row.cells[1:])
+    (load,) = next(one for one in study_decision(found, "J1", asked).designs if one.name == "serial").others
+    assert load.improvement is not None
+    base = found.other_value.sel(layout="usual", index="J1", other="J3").item()
+    assert load.improvement.error == pytest.approx(100.0 * np.hypot(*errors.values()) / base)
 
 
 def test_improvements_are_those_of_a_comparison(result: StudyResult) -> None:

@@ -65,14 +65,14 @@ def by_method(results: xr.Dataset, method: str) -> xr.Dataset:
 
 
 def error_of(design: xr.Dataset, of: str = "value") -> float:
-    """Standard error of the value, or of the improvement, of one design; nan if unknown."""
-    name = {"value": "standard_error", "improvement": "improvement_error"}[of]
+    """Standard error of the value, the improvement, or another index of one design; nan if unknown."""
+    name = {"value": "standard_error", "improvement": "improvement_error", "other": "other.standard_error"}[of]
     return float(design[name]) if name in design else np.nan
 
 
 def bound_of(design: xr.Dataset, of: str = "value") -> float:
-    """The largest error of the value (relative), or of the improvement [%], of one design; nan where none is known."""
-    name = {"value": "error_bound", "improvement": "improvement_bound"}[of]
+    """The largest error of the value or another index (relative), or of the improvement [%]; nan if none is known."""
+    name = {"value": "error_bound", "improvement": "improvement_bound", "other": "other_error_bound"}[of]
     return float(design[name]) if name in design else np.nan
 
 

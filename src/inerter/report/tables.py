@@ -9,10 +9,12 @@ import xarray as xr
 
 from inerter.errors import StatusKind
 from inerter.figures.labels import (
+    bound_of,
     by_method,
     by_which,
     compared_layouts,
     design_quantity,
+    error_of,
     flat_range,
     improvement_text,
     index_unit,
@@ -134,8 +136,8 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
 
 
 def _other(results: xr.Dataset, design: xr.Dataset, other: str) -> Quantity:
-    bound = float(design["other_error_bound"]) if "other_error_bound" in design else np.nan
-    return Quantity(float(design["other_value"]), index_unit(results, other), bound=bound)
+    errors = (error_of(design, "other"), bound_of(design, "other"))
+    return Quantity(float(design["other_value"]), index_unit(results, other), *errors)
 
 
 def is_short(results: xr.Dataset) -> bool:

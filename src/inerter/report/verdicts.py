@@ -213,30 +213,23 @@ def _road_effects(value: xr.Dataset, name: str) -> dict[str, list[float]]:
     return found
 
 
-def _relative_error(design: xr.Dataset) -> float:
-    error, value = error_of(design), float(design["value"])
-    return error / abs(value) if isfinite(error) and value else 0.0
-
-
 def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> Iterator[IndexResult]:
-    """Other indices of the same design, compared with those of the baseline's design.
-
-    Their standard errors are not among the results; those of the index itself, relative to it, take their place.
-    """
+    """Other indices of the same design, compared with those of the baseline's design."""
     baseline = row.attrs["baseline"]
     if not baseline or "other_value" not in row:
         return
     pair = [row.sel(layout=name) for name in (layout, baseline)]
-    spread = 100.0 * hypot(*map(_relative_error, pair))
     for other in results["other"].values.tolist():
         both = [one.sel(other=other) for one in pair]
         own, reference = (float(one["other_value"]) for one in both)
         by, percent = None, percent_below(own, reference)
         if layout != baseline and isfinite(percent):
-            bounds = [float(one["other_error_bound"]) if "other_error_bound" in one else nan for one in both]
+            errors = [error for one in both if isfinite(error := error_of(one, "other"))]
+            spread = 100.0 * hypot(*errors) / abs(reference)
+            bounds = [bound_of(one, "other") for one in both]
             effects = [_road_effects(one, OTHER_EFFECT) for one in both]
             bound = improvement_bound(own, reference, bounds[0], bounds[1], *effects)
-            by = Improvement(percent, bound=bound, is_tie=abs(percent) <= _TWO_SIDED * spread)
+            by = Improvement(percent, spread or nan, bound, is_tie=abs(percent) <= _TWO_SIDED * spread)
         if other != index and not (isnan(own) and isnan(reference)):
             yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
 

@@ -134,8 +134,9 @@ class DatasetBuilder:
                 arrays[OTHER_EFFECT][number, m] = [
                     self._of_road(effects.get(other, {})) for other in self.study.indices
                 ]
-            error = outcome.standard_errors.get(method, {}).get(index)
-            arrays["standard_error"][number, m] = np.nan if error is None else error
+            errors = {of: error for of, error in outcome.standard_errors.get(method, {}).items() if error is not None}
+            arrays["standard_error"][number, m] = errors.get(index, np.nan)
+            arrays["other.standard_error"][number, m] = [errors.get(other, np.nan) for other in self.study.indices]
             best = best or isfinite(values.get(index, np.nan))
         for name, parameter in outcome.parameters.items() if best else ():
             place = number, self._columns[name]
@@ -362,6 +363,7 @@ _VARIABLES: dict[str, _Variable] = {
     "improvement_bound": (("method",), np.nan, "largest error of the improvement, sampling apart"),
     "other_value": (("method", "other"), np.nan, "other indices of the same design"),
     "other_error_bound": (("method", "other"), np.nan, "their largest relative errors, sampling apart"),
+    "other.standard_error": (("method", "other"), np.nan, "their standard errors"),
     "parameter_value": (("parameter",), np.nan, "parameter at the optimum"),
     "parameter_low": (("parameter",), np.nan, "least among equally good optima"),
     "parameter_high": (("parameter",), np.nan, "largest among equally good optima"),

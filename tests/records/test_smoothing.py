@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.interpolate import make_interp_spline
 
 from inerter.errors import RecordError
 from inerter.records.filtering import gain, low_pass
 from inerter.records.record import Record
-from inerter.records.smoothing import noise_of, resolution, smooth_displacement
+from inerter.records.smoothing import interpolate, noise_of, resolution, smooth_displacement
 from inerter.report.options import as_options
 
 
@@ -116,6 +117,19 @@ def test_blocks_make_no_difference(monkeypatch):
     monkeypatch.setattr("inerter.records.smoothing._BLOCK", 333)
     parts = smooth_displacement(record)
     assert parts.acceleration == pytest.approx(whole.acceleration, abs=1e-12)
+
+
+@pytest.mark.parametrize("parts", [1, 4])
+@pytest.mark.parametrize("count", [2, 3, 8, 9, 20, 21, 22, 23, 60])
+def test_between_samples_it_is_a_spline_of_degree_7(count, parts):
+    """Weights that all even intervals share, against the recursion of de Boor in each of them."""
+    rng = np.random.default_rng(count)
+    values, interval = rng.normal(size=count), 10.0 ** rng.uniform(-4.0, 2.0)
+    spline = make_interp_spline(interval * np.arange(count), values, min(7, count - 1 - count % 2))
+    at = interval * np.arange((count - 1) * parts + 1) / parts
+    found, slope = interpolate(values, interval, parts)
+    assert found == pytest.approx(spline(at), abs=1e-12 * np.ptp(values))
+    assert slope == pytest.approx(spline(at, 1), abs=1e-11 * np.ptp(values) / interval)
 
 
 def test_what_cannot_be_smoothed():

@@ -92,8 +92,16 @@ class Experiment:
         if parts == 1:
             return self.table
         if parts not in self.finer:
-            self.finer[parts] = _table(self.motion, parts, _knots_per_interval(self.motion, self.rigid))
+            knots = _knots_per_interval(self.motion, self.rigid)
+            self.finer[parts] = self.table_in(knots).refine(parts // knots) if parts > knots else self._knotted(parts)
         return self.finer[parts]
+
+    def _knotted(self, knots: int) -> InputTable:
+        """The motion with so many knots in each interval."""
+        height, slope = _between_samples(self.motion, knots)
+        value, rate = height[:, None], slope[:, None]
+        finer = self.table.refine(knots)
+        return replace(finer, value=value, slope=rate, value_before=value, slope_before=rate)
 
     def with_motion(self, displacement: Matrix, velocity: Matrix) -> Experiment:
         """The same record with another motion of the table."""
@@ -335,11 +343,9 @@ def _steps_wanted(integration: event_driven.Integration) -> float:
     return float(integration.table.step / (_PACE * reach))
 
 
-def _table(motion: Motion, parts: int = 1, knots: int = 1) -> InputTable:
+def _table(motion: Motion) -> InputTable:
     duration = float(motion.time[-1] - motion.time[0])
-    return tabulate(
-        [_signal(motion, min(knots, parts))], [0.0], duration, duration / (motion.time.size - 1) / parts, every=parts
-    )
+    return tabulate([_signal(motion)], [0.0], duration, duration / (motion.time.size - 1))
 
 
 def _knots_per_interval(motion: Motion, rigid: bool = False) -> int:
@@ -352,18 +358,22 @@ def _knots_per_interval(motion: Motion, rigid: bool = False) -> int:
     return 1 << min(max(math.ceil(math.log2(per_period * motion.highest * interval)), 0), most)
 
 
-def _signal(motion: Motion, knots: int) -> Signal:
+def _signal(motion: Motion, knots: int = 1) -> Signal:
     """The motion as cubics between so many knots per interval."""
     time = motion.time - motion.time[0]
-    even = np.linspace(0.0, time[-1], time.size)
-    if np.max(np.abs(time - even)) > _ROUNDED * even[1]:  # times that a file rounds, in even steps all the same
+    even = np.linspace(0.0, time[-1], knots * (time.size - 1) + 1)
+    if knots > 1 or np.max(np.abs(time - even)) > _ROUNDED * even[1]:  # times that a file rounds, in even steps
         time = even
-    slope = motion.velocity
-    height = motion.displacement - motion.displacement[0]  # where the table stands at the start does not matter
-    if knots > 1:
-        coarse, time = time, np.linspace(0.0, time[-1], knots * (time.size - 1) + 1)
-        height, slope = interpolate(coarse, height, time)
+    height, slope = _between_samples(motion, knots)
     return Signal.sampled(time, height, derivative=slope, label="measured displacement")
+
+
+def _between_samples(motion: Motion, knots: int) -> tuple[Matrix, Matrix]:
+    """Displacement from the first sample on, and velocity, at so many knots per interval."""
+    height = motion.displacement - motion.displacement[0]  # where the table stands at the start does not matter
+    if knots == 1:
+        return height, motion.velocity
+    return interpolate(height, float(motion.time[-1] - motion.time[0]) / (motion.time.size - 1), knots)
 
 
 def _truncate(table: InputTable, segments: int) -> InputTable:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import bilinear, lfilter
+from scipy.signal import lfilter
 
 from inerter.identification.experiment import Experiment
 from inerter.identification.statements.causes import Details, Suspect
@@ -201,8 +201,11 @@ def filter_force(values: Matrix, interval: float, time: float) -> Matrix:
     """The values after a Butterworth low-pass filter of second order with corner 1/(2 pi `time`)."""
     if time <= 0.0:
         return values
-    b, a = bilinear([1.0], [time**2, math.sqrt(2.0) * time, 1.0], 1.0 / interval)
-    return np.asarray(lfilter(b, a, values))
+    rate = 2.0 * time / interval  # of the bilinear transformation: s = 2 (z - 1) / (z + 1) / interval
+    square, damped = rate**2, math.sqrt(2.0) * rate
+    return np.asarray(
+        lfilter([1.0, 2.0, 1.0], [1.0 + damped + square, 2.0 - 2.0 * square, 1.0 - damped + square], values)
+    )
 
 
 def read_by_load_cell(force: Matrix, experiment: Experiment) -> Matrix:

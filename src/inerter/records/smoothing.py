@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BSpline, make_interp_spline
 from scipy.signal import detrend, periodogram, welch
 
 from inerter.errors import RecordError
@@ -29,6 +29,7 @@ MARGIN = 4.0  # the bandwidth over the highest frequency in the displacement
 ABOVE = 5.0  # times the noise floor, that a band has to hold to count as motion
 _BLOCK = 1 << 18  # samples of one spline
 _DEGREE = 7  # of splines: at seven samples in a period their slope is off by 4e-6, that of cubic ones by 4e-3
+_EVEN = 10  # intervals from each end, beyond which all knots that a place depends on are even
 _BANDS = 6  # an octave
 _NEIGHBOURS = np.array([[1.0], [2.0], [3.0]])  # at which a B-spline of degree 7 is not zero, ...
 _VALUES = np.array([1191.0, 120.0, 1.0]) / 2520.0  # ... twice its values there, ...
@@ -60,12 +61,12 @@ class Motion:
     @cached_property
     def acceleration(self) -> Vector:
         """Acceleration [m/s^2], shape (n,)."""
-        return interpolate(self.time, self.velocity, self.time)[1]
+        return interpolate(self.velocity, _spacing(self.time))[1]
 
     def smooth(self, displacement: Vector) -> tuple[Vector, Vector]:
         """Another displacement on the same times, and its velocity, by the same filter."""
-        smooth = low_pass(displacement, float(self.time[-1] - self.time[0]) / (self.time.size - 1), self.bandwidth)
-        return smooth, interpolate(self.time, smooth, self.time)[1]
+        smooth = low_pass(displacement, _spacing(self.time), self.bandwidth)
+        return smooth, interpolate(smooth, _spacing(self.time))[1]
 
 
 def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motion:
@@ -87,7 +88,7 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
     limit = HIGHEST / interval
     chosen = min(MARGIN * noise.highest, limit) if bandwidth is None else float(bandwidth)
     displacement = low_pass(record.displacement, interval, chosen)
-    velocity = interpolate(record.time, displacement, record.time)[1]
+    velocity = interpolate(displacement, _spacing(record.time))[1]
     attenuation = 1.0 - float(gain(np.array([noise.highest]), interval, chosen)[0])
     noises = _derivative_noise(noise.density, interval, chosen)
     return Motion(
@@ -189,19 +190,46 @@ def resolution(values: Vector) -> float:
     return float(np.sum(steps) / np.sum(np.round(multiples)))
 
 
-def interpolate(time: Vector, values: Vector, at: Vector) -> tuple[Vector, Vector]:
-    """Values and slopes at increasing times within `time`, of the spline of degree 7 through values at even times.
+def interpolate(values: Vector, interval: float, parts: int = 1) -> tuple[Vector, Vector]:
+    """Values and slopes at `parts` even places in each interval, of the spline of degree 7 through even samples.
 
     It is computed block by block, with overlaps of 64 samples.
+
+    >>> interpolate(np.arange(20.0) ** 2, 1.0, 2)[0][:4]
+    array([0.  , 0.25, 1.  , 2.25])
     """
-    found, slope = np.empty(at.size), np.empty(at.size)
-    for start in range(0, time.size, _BLOCK):
-        near = slice(max(start - 64, 0), start + _BLOCK + 64)
-        ends = np.searchsorted(at, time[start : start + _BLOCK + 1][[0, -1]])
-        here = slice(int(ends[0]), at.size if start + _BLOCK >= time.size else int(ends[1]))
-        spline = make_interp_spline(time[near], values[near], min(_DEGREE, time[near].size - 1 - time[near].size % 2))
-        found[here], slope[here] = spline(at[here]), spline(at[here], 1)
-    return found, slope
+    found = np.empty((2, (values.size - 1) * parts + 1))
+    for start in range(0, values.size - 1, _BLOCK):
+        stop, first = min(start + _BLOCK, values.size - 1), max(start - 64, 0)
+        block = _sample_spline(values[first : start + _BLOCK + 64], parts)
+        found[:, start * parts : stop * parts + 1] = block[:, (start - first) * parts : (stop - first) * parts + 1]
+    return found[0], found[1] / interval
+
+
+def _sample_spline(values: Vector, parts: int) -> NDArray[np.float64]:
+    """Values and slopes (2, places) of one spline, with the interval as the unit of time.
+
+    Away from the ends its knots are even, so that all intervals have the same weights of eight coefficients.
+    """
+    degree = min(_DEGREE, values.size - 1 - values.size % 2)
+    spline = make_interp_spline(np.arange(values.size, dtype=np.float64), values, degree)
+    found = np.empty((2, (values.size - 1) * parts + 1))
+    first, stop = (_EVEN, values.size - 1 - _EVEN) if values.size - 1 > 2 * _EVEN else (0, 0)
+    if stop:
+        even = BSpline(np.arange(2.0 * degree + 2.0), np.eye(degree + 1), degree)
+        for order in range(2):
+            weights = even(degree + np.arange(parts) / parts, order)
+            inner = sum(spline.c[first - 3 + i : stop - 3 + i, None] * weights[:, i] for i in range(degree + 1))
+            found[order, first * parts : stop * parts] = np.ravel(inner)
+    for ends in (slice(0, first * parts), slice(stop * parts, None)):
+        at = np.arange(found.shape[1])[ends] / parts
+        found[:, ends] = spline(at), spline(at, 1)
+    return found
+
+
+def _spacing(time: Vector) -> float:
+    """Interval of even times [s]."""
+    return float(time[-1] - time[0]) / (time.size - 1)
 
 
 def _spectrum(values: Vector, interval: float) -> tuple[Vector, Vector]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite, isnan, nan
 from typing import Any
 
@@ -15,6 +15,7 @@ from inerter.formatting import (
     format_number,
     format_quantity_in_table,
     format_uncertain,
+    merge_alike,
     shows_error,
 )
 
@@ -140,6 +141,18 @@ class Table:
         for row in self.rows:
             if row.shown:
                 yield row, [cell for column, cell in zip(self.columns, row.cells, strict=True) if column.heading]
+
+    def with_merged_doubts(self) -> Table:
+        """Table in which a doubt of several rows, alike but for its numbers, is said once, below them."""
+        rows, below = list(self.rows), list(self.failures)
+        doubtful = [i for i, row in enumerate(rows) if row.shown and ": " in row.status]
+        for text, places in merge_alike([rows[i].status for i in doubtful]):
+            if len(places) > 1:
+                alike = [doubtful[place] for place in places]
+                below.append(f"{'; '.join(rows[i].cells[0].text for i in alike)}: {text}")
+                for i in alike:
+                    rows[i] = replace(rows[i], status=f"{text.partition(': ')[0]}: see below")
+        return replace(self, rows=rows, failures=below)
 
     @property
     def has_verdict(self) -> bool:

@@ -349,3 +349,16 @@ def test_a_terminal_has_the_values_of_a_sweep_where_improvements_are_largest_and
             shown = [[float(number) for number in re.findall(rf"(\S+) {re.escape(unit)}", line)] for line in lines]
             assert any(numbers == expected for numbers in shown), (shown, expected)
     assert re.search(r"S2 +\+6\.0 % at 60 kN/m +\+1\.2 % at 120 kN/m", text)
+
+
+def test_a_doubt_of_several_rows_is_said_once_below_them():
+    """Alike but for its numbers, of which the range is told; another doubt stays below its own row."""
+    said = ["inaccurate: off by up to 5.4 %", "", "failed: no value", "inaccurate: off by up to 8 %"]
+    rows = [Row(cells(f"S{i}", 2.0), status=status) for i, status in enumerate(said)]
+    lines = list(table_lines(Table("Designs", columns("Layout", "J1"), rows)))
+    assert [line for line in lines if "!" in line] == [
+        "    ! inaccurate: see below",
+        "    ! failed: no value",
+        "    ! inaccurate: see below",
+        "    ! S0; S3: inaccurate: off by up to 5.4 to 8 %",
+    ]

@@ -43,6 +43,7 @@ def table_lines(table: Table, width: int = WIDTH) -> Iterator[str]:
 
     Columns that are listed become items "heading = text" of the last one. The reason for a doubt stands below its row.
     """
+    table = table.with_merged_doubts()
     yield from wrap(table.caption, width, subsequent_indent=_GAP * 2)
     grid, labels, keys = _with_labels(_grid(table), width, table.labels)
     if not grid.columns[keys:]:

@@ -254,10 +254,10 @@ def test_a_small_friction_changes_each_road_as_predicted(case):
     excitation = random_excitation(system, definition, CONVENTIONS[conventions])
     weights = [abs(output.weight) for output in definition.outputs]
     for seed in realisation_seeds(0, 0, 2):
-        plain = run(system, excitation, outputs, definition.filters, seed)
+        plain = run(system, excitation, outputs, definition.filters, (seed, None))
         assert plain.status.ok
         rubbing = piecewise(design(2.0))
-        found = run(rubbing, excitation, outputs, definition.filters, seed).power
+        found = run(rubbing, excitation, outputs, definition.filters, (seed, None)).power
         change = (np.sqrt(found) - np.sqrt(plain.power)) @ weights
         assert first_order(rubbing, definition, excitation)([seed])[0] == pytest.approx(change, rel=0.05)
 

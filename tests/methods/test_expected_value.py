@@ -257,6 +257,18 @@ def test_play_that_rattles_on_has_a_value_of_its_own(index):
     assert "nothing is added" in rattling.notes[0]
 
 
+def test_the_bound_holds_where_one_peak_of_a_longer_road_sets_an_inerter_coasting_for_good():
+    """In a gap of four times the r.m.s. travel, which the usual roads do not close, and one of two of 160 s does."""
+    road = Road(5.6e-7, 5.0)
+    elastic = Spring(1.16e6) | Damper(2650.0)
+    strut = Spring(17.7e3) | Damper(1420.0) | elastic - Gap(0.01294) - Inerter(33.0)
+    car = QuarterCar(244.0, 25.0, 203e3, strut)
+    usual, long = (it.evaluate(car, RideComfort(road), replace(TWO, period=period)) for period in (None, 160))
+    assert long.value > 1.05 * usual.value
+    assert long.value < (1.0 + usual.error_bound) * usual.value
+    assert not usual.status.ok
+
+
 @pytest.mark.parametrize(
     ("element", "words"),
     [(OneSidedStop(2e-3, "bump"), "stop 'bump' in 'strut'"), (Gap(2e-3, "g"), "gap 'g' in 'strut'")],

@@ -143,13 +143,17 @@ def run(
     excitation: RandomExcitation,
     outputs: Sequence[str],
     filters: Sequence[Filter | None],
-    seed: int,
+    on_road: tuple[int, Array | None],
     *,
     spectra: bool = False,
 ) -> Squares:
-    """Mean squares of the steady state on the road of a seed; the first outputs pass through `filters`."""
+    """Mean squares of the steady state on the road of a seed, from a state or from rest.
+
+    The first outputs pass through `filters`.
+    """
+    seed, begin = on_road
     inputs = table(excitation, seed)
-    state = initial_state(system, inputs.value[0], "rest")
+    state = initial_state(system, inputs.value[0], "rest") if begin is None else begin
     most = max(_FEWEST_PERIODS, round(FEW_PERIODS * PERIOD / excitation.period))
     return steady_squares(system, inputs, outputs, filters, state, most, spectra=spectra)
 

@@ -231,6 +231,25 @@ def test_criteria_that_do_not_contradict_each_other():
 
 
 @pytest.mark.campaign
+def test_among_many_local_optima_points_are_searched_from_more_starts_and_ends_keep_their_doubt():
+    """A half car at walking speed; the known design is the best of 40 searches by SLSQP at an equal tyre load."""
+
+    def axle(stiffness, damping):
+        link = it.Spring(it.free(1e3, 1e6, "s")) - it.Inerter(it.free(1.0, 2e3, "b"))
+        return it.Spring(stiffness) | it.Damper(damping) | link
+
+    front, rear = axle(105706.0, 111.57), axle(25366.6, 934.66)
+    car = it.HalfCar(1144.65, 445.43, 65.222, 22.488, 223188.0, 171441.0, 1.33145, 1.22013, front=front, rear=rear)
+    slow = it.Road(roughness=5e-7, speed=0.83185)
+    indices = [it.RideComfort(slow), it.TyreLoad(slow)]
+    found = it.pareto_front(car, indices, NORM, points=3)
+    known = car.with_values({"s": 919579.9, "b": 4.142877})
+    check_undominated(found, np.array([[it.evaluate(known, index, NORM).value for index in indices]]), 1e-6)
+    assert found.statuses[0] == it.optimise(car, indices[0], NORM).status
+    assert found.status.kind is it.StatusKind.INACCURATE
+
+
+@pytest.mark.campaign
 def test_a_front_that_no_design_reaches():
     front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J5], NORM, subject_to=[it.at_most(J3, 100.0)])
     assert front.values.shape == (0, 2)

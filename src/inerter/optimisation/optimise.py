@@ -179,7 +179,7 @@ def optimise(
     """
     check_request(vehicle, index, method)
     free = check_free(vehicle)
-    starts = 8 * len(free) if starts is None else starts
+    starts = default_starts(free) if starts is None else starts
     check_whole(DesignError, "`starts`", starts, 1, MOST_STARTS)
     check_whole(DesignError, "`seed`", seed)
     limits = check_limits(subject_to)
@@ -397,6 +397,11 @@ def _searches(problem: ConstrainedProblem, first: list[Array], quick: bool = Fal
     return searches_from(
         first, lambda start, found: descend(objective, start, lower, upper, found if quick else ()), 1.0
     )
+
+
+def default_starts(free: Mapping[str, Free]) -> int:
+    """Starts of a search for the best of these free values, unless there are many local optima."""
+    return 8 * len(free)
 
 
 def check_free(vehicle: Vehicle) -> dict[str, Free]:

@@ -29,7 +29,7 @@ from inerter.optimisation.active_constraints import constraint_results
 from inerter.optimisation.constrained_search import ConstrainedProblem, refine_minimax, searches, trust_region
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum
-from inerter.optimisation.optimise import check_free, optimise
+from inerter.optimisation.optimise import check_free, default_starts, optimise
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.points import (
     FrontPoint,
@@ -54,6 +54,7 @@ _SLACK = 1e-6  # tolerance of a normalised criterion
 _WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: those that are filled, and those tested for a discontinuity
 _AT_END = 0.02  # of a gap, within which a point is at its end
 _STARTS = 3  # from the sample for each point
+_DENSER, _MORE = 2, 4  # with many local optima: power of two of more samples, and times as many starts
 _RESTARTS = 4  # with improved ends
 
 
@@ -100,9 +101,10 @@ def pareto_front(
                 return _empty(criteria, int(seed), end.status)
             ends.append(end)
         found_ends = [np.array(list(end.parameters.values())) for end in ends]
-        trade = _trade(vehicle, criteria, method, limits, free, found_ends, int(seed)).from_strict_ends()
-        found = trade.front(int(points))
-        return _front(trade, found, int(seed))
+        trade = _trade(vehicle, criteria, method, limits, free, found_ends, int(seed))
+        has_many_optima = any(end.n_starts > default_starts(free) for end in ends)
+        trade = replace(trade, has_many_optima=has_many_optima).from_strict_ends()
+        return _front(trade, trade.front(int(points)), [end.status for end in ends], int(seed))
 
 
 def points_at_aims(
@@ -165,6 +167,7 @@ class _Trade:
     hints: Array  # points of the front of a quick method
     seed: int
     given_scale: tuple[Array, Array] | None = None  # instead of that of the ends
+    has_many_optima: bool = False  # as the searches for the ends have found
 
     def criteria(self, points: Array) -> Array:
         """The indices (n, criteria) at each row of `points`."""
@@ -195,7 +198,7 @@ class _Trade:
             return self.hints, (table - self.scale[0]) / self.scale[1], own
         count = self.lower.size
         sampler = scipy.stats.qmc.Sobol(count, rng=np.random.default_rng(self.seed))
-        unit = sampler.random_base2(min(7 + count, 12))
+        unit = sampler.random_base2(min(7 + count, 12) + (_DENSER if self.has_many_optima else 0))
         points = np.exp(np.log(self.lower) + unit * (np.log(self.upper) - np.log(self.lower)))
         table = (self.criteria(points) - self.scale[0]) / self.scale[1]
         over = ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(points)
@@ -226,8 +229,9 @@ class _Trade:
         merit = np.max(table[:, which] - aim[list(which)], axis=1)
         merit = np.where(np.isfinite(merit), merit, np.inf)
         order = np.argsort(merit, kind="stable")
-        lowest = [i for i in order[: 64 * _STARTS] if np.isfinite(merit[i]) and merit[i] <= merit[near[i]].min()]
-        return [points[i] for i in lowest[:_STARTS]]
+        most = _STARTS * (_MORE if self.has_many_optima else 1)
+        lowest = [i for i in order[: 64 * most] if np.isfinite(merit[i]) and merit[i] <= merit[near[i]].min()]
+        return [points[i] for i in lowest[:most]]
 
     def solve(self, aim: Array, known: Sequence[FrontPoint], which: Sequence[int] = ()) -> FrontPoint | None:
         """The point of the front closest to an aim, from the sample and known points; None if none is feasible."""
@@ -410,13 +414,19 @@ def _empty(indices: tuple[IndexLike, ...], seed: int, status: Status) -> ParetoF
     return ParetoFront(indices, np.zeros((0, len(indices))), (), (), (), (), (), seed, status)
 
 
-def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]]], seed: int) -> ParetoFront:
+def _front(
+    trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]]], of_ends: Sequence[Status], seed: int
+) -> ParetoFront:
     several, jumps = found
     names = tuple(trade.vehicle.free_values())
     parameters = tuple(dict(zip(names, one.point.tolist(), strict=True)) for one in several)
     designs = tuple(trade.vehicle.with_values(values) for values in parameters)
     estimates = tuple(tuple(estimate_of(design, one, trade.method) for one in trade.indices) for design in designs)
-    statuses = tuple(worst_of(e.status for e in row) for row in estimates)
+    values = np.array([[estimate.value for estimate in row] for row in estimates])
+    of_points = [[e.status for e in row] for row in estimates]
+    for end, status in zip(np.argmin(values, axis=0).tolist(), of_ends, strict=True):
+        of_points[end].append(status)
+    statuses = tuple(map(worst_of, of_points))
     bad, troubled = worst_of(statuses), sum(not one.ok for one in statuses)
     status = OK if bad.ok else Status(bad.kind, f"{troubled} of {len(statuses)} points, such as one with {bad.message}")
     problem = ConstrainedProblem(None, trade.bounds, trade.lower, trade.upper)
@@ -426,5 +436,4 @@ def _front(trade: _Trade, found: tuple[list[FrontPoint], set[tuple[bytes, bytes]
     )
     keys = [one.point.tobytes() for one in several]
     pairs = tuple((i, i + 1) for i in range(len(keys) - 1) if (keys[i], keys[i + 1]) in jumps)
-    values = np.array([[estimate.value for estimate in row] for row in estimates])
     return ParetoFront(trade.indices, values, parameters, designs, statuses, pairs, held, seed, status, estimates)

@@ -25,7 +25,7 @@ from inerter.formatting import (
     format_uncertain,
     format_with_error,
     format_with_interval,
-    join_units,
+    printed_text,
     shown_decimals,
     significant_digits,
     typeset,
@@ -194,11 +194,11 @@ def test_numbers_that_are_none():
 
 @given(SIZES, st.sampled_from(UNITS))
 def test_a_number_and_its_unit_stay_on_one_line_and_words_part(value, unit):
-    quantity = format_quantity(value, unit)
+    quantity = typeset(f"= {format_quantity(value, unit)}")[2:]
     text = (
         f"no design of 3 layouts has at most {quantity} with 2 {quantity}, 12 % of {quantity}; the nearest {quantity}."
     )
-    lines = join_units(text).split(" ")
+    lines = printed_text(text).split(" ")
     assert "".join(lines).replace("\xa0", "") == text.replace(" ", "")
     assert [line.replace("\xa0", " ") for line in lines] == [
         *("no", "design", "of", "3", "layouts", "has", "at", "most", quantity, "with", "2"),

@@ -32,12 +32,12 @@ _NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.]*[A-Za-z
 _POWER = re.compile(r"\^(-?\d)")
 _MINUS = re.compile(r"(?<![^ (\[])-(?=[\d.]|inf\b)")  # before a number, not within a word or a date
 _MICRO = re.compile(r"(?:(?<=\d )|(?<=in )|(?<=[\[(]))u(?=[ms]\b)")
-_UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![^\W\d_])[^\s,;:]*"
+_UNIT = r"\(?[munµkMG]?(?:N|m|g|s|t|Hz|rad|cycle)(?![A-Za-z])[^\s,;:]*"
 _LEAST = 1e-12  # of a number that is written without a power of ten, and its inverse
 _EXPONENT = re.compile(
     rf"(?<![\w.])(\d+(?:\.\d+)?)e([+-])(?=\d\d|\d[ \xa0]{_UNIT})0*(\d+)\b"
 )  # not in a name, such as 1e-3
-_QUANTITY = re.compile(rf"(?<=[\d.]) (?:%|{_UNIT}(?: {_UNIT})*)")
+_QUANTITY = re.compile(rf"(?<=[\d.⁰¹²³⁴⁵⁶⁷⁸⁹]) (?:%|{_UNIT}(?: {_UNIT})*)")
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -383,13 +383,18 @@ def typeset_quantity(value: float, unit: str) -> str:
     return typeset(format_quantity(value, unit)).replace(" ", _NO_BREAK_SPACE)
 
 
-def join_units(text: str) -> str:
-    r"""Text with no-break spaces between numbers and their units.
+def printed_text(text: str) -> str:
+    r"""`typeset` text without line breaks between a number, its error and its unit.
 
-    >>> join_units("at most 400 N of 1 of 2").split(" ")
-    ['at', 'most', '400\xa0N', 'of', '1', 'of', '2']
+    >>> printed_text("at most 400 +- 3 N of 1 of 2").split(" ")
+    ['at', 'most', '400\xa0±\xa03\xa0N', 'of', '1', 'of', '2']
     """
-    return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), text)
+    return outside_quotes(_join_units, text)
+
+
+def _join_units(text: str) -> str:
+    parts = re.sub(r" ([±×]) ", rf"{_NO_BREAK_SPACE}\1{_NO_BREAK_SPACE}", _typeset(text))
+    return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), parts)
 
 
 def format_list(words: Sequence[str]) -> str:

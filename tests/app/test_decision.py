@@ -21,7 +21,7 @@ from inerter.app.answers import answer_panel
 from inerter.app.documents import study_from
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.results import dataset
-from inerter.formatting import typeset
+from inerter.formatting import printed_text
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.verdicts import study_decision
 
@@ -70,11 +70,11 @@ def test_rows_have_the_numbers_of_the_indices(client: TestClient, c1: float, c: 
         return
     assert [row["rank"] for row in told["rows"]] == [1, 2]
     assert all(one["value"] <= other["value"] for one, other in pairwise(told["rows"]))
-    (size,) = re.findall(r"([\d.]+) %", sentence)
+    (size,) = re.findall(r"([\d.]+)\xa0%", sentence)
     assert abs(float(size) - abs(two.percent)) <= (0.05 if "." in size else 0.5) * (1.0 + 1e-9)
     best = told["rows"][0]["layout"]
     assert (two.percent < 0.0) == (best == "S3")
-    assert sentence.startswith(f"S3 is {size} % better" if best == "S3" else "No strut is better")
+    assert sentence.startswith(f"S3 is {size}\xa0% better" if best == "S3" else "No strut is better")
 
 
 @pytest.mark.parametrize("method", [BLIND, SEEING])
@@ -88,7 +88,10 @@ def test_a_study_of_the_designs_has_the_same_verdict(client: TestClient, method:
     for index in ("J1", "J3"):
         told = ask(client, "panel/decision", study=DOCUMENT, values=values, methods=[method], index=index)
         verdict = study_decision(data, index, study).verdict
-        assert sentences(told) == [typeset(verdict.sentence), *(typeset(one.sentence) for one in verdict.caveats)]
+        assert sentences(told) == [
+            printed_text(verdict.sentence),
+            *(printed_text(one.sentence) for one in verdict.caveats),
+        ]
         assert told["verdict"]["severity"] == verdict.answer
         assert verdict.sentence in " ".join(conclusion_sentences(data, study))
 
@@ -128,8 +131,8 @@ def test_a_design_that_breaks_a_limit_is_not_the_best(client: TestClient, stiffn
     assert kept == (stiffness > 60e3)
     assert (rows["S3"]["rank"] is None) == (not kept)
     text = " ".join(sentences(told))
-    assert ("S3 breaks" in text and "static stiffness of strut at least 60 kN/m (20 kN/m)" in text) == (not kept)
-    assert "r.m.s. suspension travel at most 8 mm" in told["goal"]["sentence"]
+    assert ("S3 breaks" in text and "static stiffness of strut at least 60\xa0kN/m (20\xa0kN/m)" in text) == (not kept)
+    assert "r.m.s. suspension travel at most 8\xa0mm" in told["goal"]["sentence"]
 
 
 def test_a_value_at_its_bound_is_told(client: TestClient) -> None:
@@ -203,7 +206,7 @@ def test_a_design_that_is_worse_in_a_condition_is_said_to_be(client: TestClient,
     for row in told["rows"]:
         each = [(one["share"], one["value"]) for one in row["in_conditions"]]
         assert sum(part * value for part, value in each) == pytest.approx(row["value"])
-    assert typeset(f"S3 is {-second:.1f} % worse than S1 in condition laden.") in sentences(told)
+    assert printed_text(f"S3 is {-second:.1f} % worse than S1 in condition laden.") in sentences(told)
     assert not [text for text in sentences(told) if "in condition 1" in text]
 
 

@@ -37,7 +37,7 @@ from inerter.files.simulation.running import run_simulation
 from inerter.files.study.cases import cases, run_case
 from inerter.files.study.parts import run_part
 from inerter.files.study.results import dataset
-from inerter.formatting import typeset
+from inerter.formatting import printed_text
 from inerter.report.conclusions import conclusion_sentences
 from inerter.report.speeds import speed_sentences
 from inerter.report.study_data import as_text
@@ -125,10 +125,10 @@ def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
     ).replace("quarter-car", "half-car")
     study = load_text(tmp_path, text)
     results = dataset(study, {case: run_case(study, case) for case in cases(study)})
-    expected = {key: [*map(typeset, told)] for key, told in asdict(speed_sentences(results)).items()}
+    expected = {key: [*map(printed_text, told)] for key, told in asdict(speed_sentences(results)).items()}
     (sentence,) = expected["doubts"] + expected["others"]
     assert sentence.count("km/h") >= 3
-    assert sentence in map(typeset, conclusion_sentences(results, study))
+    assert sentence in map(printed_text, conclusion_sentences(results, study))
     document = tomllib.loads(text)
     panel = ask(client, "panel/optimise", study=document)
     work = ask(client, "work", kind="optimise", study=document, wait=30)["result"]
@@ -352,7 +352,7 @@ def test_a_point_of_a_front_is_compared_with_the_knee_that_it_could_be(client: T
             knee = of["points"][of["knee"]]["values"]
             for index, value in point["values"].items():
                 change = 100.0 * (value / knee[index] - 1.0)
-                (share, way) = re.search(rf"([0-9.]+) % (lower|higher) {index}", told["sentence"]).groups()
+                (share, way) = re.search(rf"([0-9.]+)\xa0% (lower|higher) {index}", told["sentence"]).groups()
                 assert float(share) == pytest.approx(abs(change), rel=0.06)
                 assert way == ("lower" if change < 0.0 else "higher")
 

@@ -25,7 +25,7 @@ from inerter.files.study.cases import Case, Outcome, run_case
 from inerter.files.study.responses import IndexResponse, index_responses
 from inerter.files.study.results import dataset
 from inerter.files.study.study import Study
-from inerter.formatting import format_quantity, in_words, typeset
+from inerter.formatting import format_quantity, in_words, printed_text, typeset
 from inerter.indices.registry import INDICES
 from inerter.methods.registry import DEFAULT, averages, is_blind, methods_that, searches
 from inerter.networks.elements import Damper, Element, Inerter, Spring
@@ -200,7 +200,7 @@ def optimum(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
     tell(len(found), len(every), "")
     return {
         "designs": [_describe_outcome(study, outcome) for outcome in found.values()],
-        "at_speeds": {key: [*map(typeset, told)] for key, told in asdict(_at_speeds(asked, found)).items()},
+        "at_speeds": {key: [*map(printed_text, told)] for key, told in asdict(_at_speeds(asked, found)).items()},
     }
 
 
@@ -254,7 +254,7 @@ def break_even(study: Study, body: Body) -> Answer:
             for c in found.crossings
         ],
         "ranges": [{"lower": r.lower, "upper": r.upper, "better": r.better} for r in found.ranges],
-        "sentence": typeset(_break_even_sentence(found, design.name, baseline.name)),
+        "sentence": printed_text(_break_even_sentence(found, design.name, baseline.name)),
         **found.status.to_json(),
     }
 

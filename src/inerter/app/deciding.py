@@ -19,7 +19,7 @@ from inerter.decision.results import DesignResult, Improvement, IndexResult
 from inerter.files.study.conditions import condition_labels
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
-from inerter.formatting import format_list, typeset
+from inerter.formatting import format_list, printed_text
 from inerter.methods.compare import compare_estimates
 from inerter.methods.method import Estimate
 from inerter.methods.registry import brief_words_of, with_decisive_method
@@ -58,7 +58,7 @@ def decision(study: Study, body: Body) -> Answer:
     return {
         "goal": {
             **describe_index(study, goal),
-            "sentence": typeset(goal_sentence(study, goal, method)),
+            "sentence": printed_text(goal_sentence(study, goal, method)),
         },
         "method": method,
         "rows": [compared.row(rank, result) for rank, result in zip(told.ranks, told.designs, strict=True)],

@@ -14,14 +14,14 @@ from inerter.app.designs import describe_index, problem_digest
 from inerter.app.documents import study_from
 from inerter.app.kinds import RESULTS, Tell
 from inerter.atomic_io import write_text
-from inerter.decision.results import percent_below
 from inerter.errors import Status, StudyError
 from inerter.files.study.parts import run_part
 from inerter.files.study.running import csv_of
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import TaskResults
-from inerter.formatting import format_share, shown_decimals, typeset
+from inerter.formatting import format_share, printed_text, shown_decimals
 from inerter.methods.registry import methods_that, searches
+from inerter.methods.ties import percent_below
 from inerter.table import csv_rows, csv_text
 from inerter.tasks.fronts import FrontAnswer, FrontPart, Fronts
 
@@ -93,7 +93,7 @@ def _reference(study: Study, found: FrontAnswer, i: int, base: FrontAnswer | Non
     changes = ", ".join(_change(index, value, other) for index, value, other in pairs)
     name = f"{of.layout} at its knee"
     sentence = f"Relative to {name}: {changes}."
-    return {"layout": of.layout, "point": of.knee, "name": name, "sentence": typeset(sentence)}
+    return {"layout": of.layout, "point": of.knee, "name": name, "sentence": printed_text(sentence)}
 
 
 def _change(index: str, value: float, other: float) -> str:

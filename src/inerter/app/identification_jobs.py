@@ -15,7 +15,7 @@ from inerter.errors import RecordError
 from inerter.files.common.folder import WriteMode, open_results
 from inerter.files.identification.loading import identification_of
 from inerter.files.identification.running import read, run_identification
-from inerter.formatting import typeset
+from inerter.formatting import printed_text
 from inerter.report.identification import RESULT_NAMES, write_fit, write_identification
 from inerter.report.identification_data import identification_data
 from inerter.report.identification_text import misfit_sentence, unreliability_reason, whiteness_sentence
@@ -51,7 +51,7 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
     )
     return {
         **answer,
-        "shown": {name: [*map(typeset, value_and_interval(found, name))] for name in found.fit.parameters},
+        "shown": {name: [*map(printed_text, value_and_interval(found, name))] for name in found.fit.parameters},
         "offers": further_offers(found),
         "asked": {"model": body.get("model"), "config": body.get("config") or {}},
         "device": device_tables(found) if found.explains else None,  # withheld values are not handed on

@@ -8,7 +8,7 @@ from typing import Any
 from inerter.figures.curves import thin_curve
 from inerter.files.identification.running import read
 from inerter.files.identification.sections import RecordRequest
-from inerter.formatting import typeset
+from inerter.formatting import printed_text
 from inerter.records.record import CHANNELS
 
 _SHOWN = 2000  # samples of a channel
@@ -33,8 +33,8 @@ def found_in(path: str) -> dict[str, Any]:
             for name, values in record.channels().items()
             if name != "time"
         ],
-        "notes": [typeset(note) for note in record.notes],
+        "notes": [printed_text(note) for note in record.notes],
         "findings": [
-            {"severity": f.severity, "about": f.about, "sentence": typeset(f.sentence)} for f in reading.findings
+            {"severity": f.severity, "about": f.about, "sentence": printed_text(f.sentence)} for f in reading.findings
         ],
     }

@@ -16,11 +16,12 @@ from inerter.errors import OK, Status, StatusKind, StudyError
 from inerter.files.study.checking import search_plans
 from inerter.files.study.parts import PartResult
 from inerter.files.study.search_parts import GroupResult, NetworkFrontPart, RealPart, RealResult
-from inerter.files.study.search_tables import RANKED, improvement, real_gains
+from inerter.files.study.search_tables import RANKED, real_gains
 from inerter.files.study.searching import LayoutSearch, StudySearch, search_study
 from inerter.files.study.study import Study, searched_layouts
-from inerter.formatting import format_list, typeset
+from inerter.formatting import format_list, printed_text
 from inerter.methods.registry import brief_words_of
+from inerter.methods.ties import percent_below
 from inerter.network_search.front_results import FrontNetwork
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan
@@ -125,12 +126,12 @@ class _Ranking:
             ranking = [self._of_network(one, network) for network in one.result.ranking[:RANKED]]
             values = [nan, *(network.value for network in one.result.frontier)]
             frontier = [
-                self._of_network(one, network) | {"gain_on_previous_percent": improvement(network.value, before)}
+                self._of_network(one, network) | {"gain_on_previous_percent": percent_below(network.value, before)}
                 for network, before in zip(one.result.frontier, values, strict=False)
             ]
             real = [self._of_real(one, each) for each in one.real if each.network]
             searches.append(self._of_index(one.index, ranking, frontier, real, one.baseline))
-        sentences = [typeset(sentence) for sentence in search_sentences(found)]
+        sentences = [printed_text(sentence) for sentence in search_sentences(found)]
         return {**self._answer(searches, self._front(found), complete=True), "sentences": sentences}
 
     def _answer(
@@ -160,7 +161,7 @@ class _Ranking:
     def _of_network(self, one: LayoutSearch, network: FoundNetwork) -> dict[str, Any]:
         return self._row(self.plans[self.layout, one.index], network.topology, network.parameters) | {
             **_value(network.value, network.status),
-            "improvement_percent": improvement(network.value, one.baseline),
+            "improvement_percent": percent_below(network.value, one.baseline),
         }
 
     def _of_real(self, one: LayoutSearch, each: RealResult) -> dict[str, Any]:
@@ -203,7 +204,7 @@ class _Ranking:
         values = dict(zip(found.study.trade_off, point.values, strict=True))
         return self._row(plan, point.topology, point.parameters) | {
             "indices": values,
-            "improvements_percent": {index: improvement(value, baselines[index]) for index, value in values.items()},
+            "improvements_percent": {index: percent_below(value, baselines[index]) for index, value in values.items()},
             **point.status.to_json(),
         }
 

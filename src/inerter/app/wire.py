@@ -7,7 +7,7 @@ from typing import Any
 
 from inerter.app.documents import problems_of
 from inerter.errors import InerterError, WorkError
-from inerter.formatting import typeset
+from inerter.formatting import printed_text
 from inerter.report.json_data import json_data
 
 # keys of sentences and lists of them
@@ -28,16 +28,16 @@ def encode_json(data: Any) -> bytes:
 
 
 def typeset_sentences(answer: Any, key: str = "") -> Any:
-    """Answer with its sentences in printed form.
+    r"""Answer with its sentences in printed form.
 
     >>> typeset_sentences({"sentence": "below 3 um", "unit": "um"})
-    {'sentence': 'below 3 µm', 'unit': 'um'}
+    {'sentence': 'below 3\xa0µm', 'unit': 'um'}
     """
     if isinstance(answer, dict):
         return {name: typeset_sentences(one, name) for name, one in answer.items()}
     if isinstance(answer, list | tuple):
         return [typeset_sentences(one, key) for one in answer]
-    return typeset(answer) if key in _SENTENCES and isinstance(answer, str) else answer
+    return printed_text(answer) if key in _SENTENCES and isinstance(answer, str) else answer
 
 
 def decode_json(text: bytes) -> Any:

@@ -51,11 +51,6 @@ class Improvement:
         return f"as good as {other}{f' within {_LARGE_ERRORS}' if self.bound == inf else ''}"
 
 
-def percent_below(value: float, base: float) -> float:
-    """Reduction of a value relative to that of the baseline [%]; nan where they cannot be compared."""
-    return 100.0 * (1.0 - value / base) if isfinite(value) and isfinite(base) and base else nan
-
-
 def possibly_least(values: Sequence[float], over: Callable[[int, int], Improvement | None]) -> list[int]:
     """Numbers of the values that cannot be told from the lowest one, in their order; none that is not finite.
 

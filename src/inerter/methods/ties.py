@@ -1,4 +1,4 @@
-"""Selection of the least of several values, with ties where their accuracy does not separate them."""
+"""Comparison of values of which the least is the best, with ties where their accuracy does not separate them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,15 @@ import math
 from collections.abc import Sequence
 
 ACCURACY = 1e-9  # relative, of a value that is ok
+
+
+def percent_below(value: float, base: float) -> float:
+    """Reduction of a value relative to that of the baseline [%]; nan where they cannot be compared.
+
+    >>> percent_below(0.75, 1.0), percent_below(1.0, 0.0)
+    (25.0, nan)
+    """
+    return 100.0 * (1.0 - value / base) if math.isfinite(value) and math.isfinite(base) and base else math.nan
 
 
 def equally_least(values: Sequence[float]) -> list[int]:

@@ -21,12 +21,11 @@ from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.running import RESOLVED
 from inerter.files.study.study import Study
-from inerter.formatting import capital, join_units, outside_quotes, typeset
+from inerter.formatting import capital, printed_text
 from inerter.report.problem_statement import computation, problem_statement
 from inerter.report.sections import Section, trade_off_section
 from inerter.report.study_contents import StudyContents
 
-_SPACE = "\N{NO-BREAK SPACE}"
 _LARGER = 1.2  # than they are drawn, are drawings between text
 _MOST_SWEPT = 1000  # values of a sweep on a page
 _METADATA = re.compile(r"<metadata>.*?</metadata>", re.DOTALL)
@@ -134,19 +133,6 @@ def environment(*packages: str) -> Environment:
         "capital": capital,
     }
     return templates
-
-
-def printed_text(text: str) -> str:
-    """Text in print: minus signs, powers, and no line break between a number, its error and its unit.
-
-    What stands in quotes is to be typed, and remains as it is.
-    """
-    return outside_quotes(_typeset_plain, text)
-
-
-def _typeset_plain(text: str) -> str:
-    text = text.replace(" +- ", " ± ").replace(" ± ", f"{_SPACE}±{_SPACE}")
-    return join_units(typeset(text).replace(" × 10", f"{_SPACE}×{_SPACE}10"))
 
 
 def breakable(name: str) -> Markup:

@@ -23,7 +23,6 @@ from inerter.files.study.search_tables import (
     front_points_table,
     front_sizes_table,
     frontier_table,
-    improvement,
     inerters_table,
     networks_shown,
     ranking_table,
@@ -42,6 +41,7 @@ from inerter.formatting import (
 from inerter.indices.names import title_with_name
 from inerter.methods.linear import CONVENTIONS
 from inerter.methods.registry import brief_words_of, words_of
+from inerter.methods.ties import percent_below
 from inerter.report.json_data import json_data
 from inerter.report.page import PageFigure, page_figures, study_page
 from inerter.report.sections import Section
@@ -81,11 +81,11 @@ def search_sentences(found: StudySearch) -> Iterator[str]:
             yield f"{capital(one.heading)}: no network has a value."
             continue
         best, smaller = one.result.ranking[0], one.result.near_optimal(_NEAR)[0]
-        gain = improvement(best.value, one.baseline)
+        gain = percent_below(best.value, one.baseline)
         against = _comparison(Improvement(gain), found.study.baseline)
         near = ""
         if smaller.n_elements < best.n_elements:
-            behind = format_percent_size(-improvement(smaller.value, best.value))
+            behind = format_percent_size(-percent_below(smaller.value, best.value))
             near = (
                 f"; the smallest network within {format_share(_NEAR)}, {smaller.layout}, has "
                 f"{format_count(smaller.n_elements, 'elements')} and is {behind} worse"

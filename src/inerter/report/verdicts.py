@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide
 from inerter.decision.of_study import decisive_method, nonlinear_elements, remedy_of
-from inerter.decision.results import AtBound, DesignResult, Improvement, IndexResult, percent_below
+from inerter.decision.results import AtBound, DesignResult, Improvement, IndexResult
 from inerter.errors import Status, StatusKind
 from inerter.figures.labels import (
     bound_of,
@@ -31,7 +31,7 @@ from inerter.formatting import format_list, format_quantity
 from inerter.methods.averages import interval_of
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.registry import brief_words_of, with_decisive_method
-from inerter.methods.ties import ACCURACY
+from inerter.methods.ties import ACCURACY, percent_below
 from inerter.report.conditions import condition_names, in_condition
 
 if TYPE_CHECKING:

@@ -29,6 +29,7 @@ from inerter.methods.compare import compare_estimates
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import evaluate
 from inerter.methods.registry import brief_words_of, is_blind, methods_that, refuses_gaps, simulating_method
+from inerter.methods.ties import percent_below
 from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements import Damper, Element, Friction, Gap, Inerter, Network, Series, Spring
 from inerter.networks.elements.algebra import CombinedNetwork
@@ -488,7 +489,7 @@ def _analyse(asked: MarginRequest, spread: Mapping[str, float], method: str, *, 
         nominal=nominal,
         worst=found.worst,
         worst_percent=100.0 * (found.worst / nominal - 1.0) if nominal else nan,
-        worst_improvement_percent=100.0 * (1.0 - found.worst / base) if base else nan,
+        worst_improvement_percent=percent_below(found.worst, base),
         quantiles={str(share): found.quantile(share) for share in SHARES},
         status=status.kind.value,
         message=status.message,

@@ -17,6 +17,7 @@ from inerter.formatting import format_decimals, format_list, format_number, form
 from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.method import AveragingMethod
 from inerter.methods.registry import with_decisive_method
+from inerter.methods.ties import percent_below
 from inerter.systems.descriptor import linear_notes
 from inerter.table import MISSING, Column, Quantity, Row, Table, cells
 from inerter.uncertainty.tolerance import SAMPLES, tolerance_analysis
@@ -213,7 +214,7 @@ def _best_sentence(title: str, known: Sequence[ToleranceAnswer], baseline: str |
         own, other = best.numbers["quantile"], base.numbers["quantile"]
         bounds = best.error_bound or 0.0, base.error_bound or 0.0
         bound = improvement_bound(own, other, *bounds, best.shared_errors, base.shared_errors)
-        better = format_percent_size(100.0 * (1.0 - own / other), bound=bound)
+        better = format_percent_size(percent_below(own, other), bound=bound)
         compared = f", {better} better than {base.layout} with its tolerances"
     elif base is best and len(known) > 1:
         compared = "; no other layout is better than this baseline"

@@ -10,6 +10,7 @@ from inerter.errors import StatusKind
 from inerter.files.study.conditions import condition_labels
 from inerter.files.study.summary import bounds_text
 from inerter.formatting import capital, format_percent, format_percent_size, format_quantity, label_with_unit
+from inerter.methods.ties import percent_below
 from inerter.networks.elements import ELEMENT_TYPES, Inerter
 from inerter.table import Column, Content, Quantity, Row, Table, cells, columns
 
@@ -21,13 +22,6 @@ if TYPE_CHECKING:
     from inerter.network_search.results import FoundNetwork
 
 RANKED = 10  # networks in a ranking for people
-
-
-def improvement(value: float, reference: float) -> float:
-    """Reduction of a value relative to a reference [%]; nan where that has no meaning."""
-    if not (isfinite(value) and isfinite(reference)) or reference == 0.0:
-        return nan
-    return 100.0 * (reference - value) / abs(reference)
 
 
 def frontier_table(study: Study, one: LayoutSearch) -> Table:
@@ -57,7 +51,7 @@ def _frontier(study: Study, one: LayoutSearch, counted: str, found: Sequence[tup
     ]
     rows, before = [], nan
     for count, network in found:
-        gains = [improvement(network.value, before), *([improvement(network.value, one.baseline)] * is_compared)]
+        gains = [percent_below(network.value, before), *([percent_below(network.value, one.baseline)] * is_compared)]
         texts = [_gain_text(gain) for gain in gains]
         rows.append(Row(cells(f"{count}", Quantity(network.value, network.unit), *texts, network.layout)))
         before = network.value
@@ -129,7 +123,7 @@ def _network_rows(one: LayoutSearch, units: Mapping[str, str], there: Sequence[s
             "network": found.layout,
             "elements": found.n_elements,
             "value": found.value,
-            "improvement_percent": improvement(found.value, one.baseline),
+            "improvement_percent": percent_below(found.value, one.baseline),
             "status": str(found.status),
             **{units[name]: value for name, value in found.parameters.items()},
             "at_bound": bounds_text(found.active_bounds),
@@ -246,7 +240,7 @@ def real_networks_table(study: Study, one: LayoutSearch) -> Table:
 
 def real_gains(one: LayoutSearch, each: RealResult) -> tuple[float, float]:
     """Gains of a network on the baseline with ideal and with real inerters, in per cent."""
-    return improvement(one.ideal_network(each).value, one.baseline), one.real_gain(each)
+    return percent_below(one.ideal_network(each).value, one.baseline), one.real_gain(each)
 
 
 def real_table(found: StudySearch) -> Table:

@@ -26,11 +26,12 @@ from inerter.files.study.search_parts import (
     RealResult,
     result_of,
 )
-from inerter.files.study.search_tables import front_table, improvement, networks_table, real_table
+from inerter.files.study.search_tables import front_table, networks_table, real_table
 from inerter.files.study.study import Study, searched_layouts
 from inerter.files.study.work import StudyWork
 from inerter.kernels.prepare import ProgressCallback, prepare_on
 from inerter.methods.error_bounds import improvement_bound
+from inerter.methods.ties import percent_below
 from inerter.network_search.front_results import NetworkFront
 from inerter.network_search.fronts import FrontPlan, front_waves
 from inerter.network_search.plan import SearchPlan
@@ -61,7 +62,7 @@ class LayoutSearch:
     def real_gain(self, each: RealResult) -> float:
         """Gain of a network with real inerters on the baseline, by the same method [%]; nan if it is not known."""
         base = self._real_baseline(each.method)
-        return nan if base is None else improvement(each.value, base.value)
+        return nan if base is None else percent_below(each.value, base.value)
 
     def real_gain_bound(self, each: RealResult) -> float:
         """Largest error of that gain [%]."""

@@ -88,8 +88,8 @@ def test_steps_say_what_an_identification_does() -> None:
         it.identify(record, "friction", starts=8)
     names = list(dict.fromkeys(step.what for step in seen))
     wanted = [
-        *("smoothing of records", "first guess", "starting points", "search on 6.25 % of the information"),
-        *("search on all of the information", "refinement", "bootstrap", "sides of intervals", "next experiment"),
+        *("smoothing of records", "first guess", "starting points", "search, stage 1 of 5: start"),
+        *("search, stage 5 of 5: start", "refinement", "bootstrap", "sides of intervals", "next experiment"),
     ]
     assert [name for name in names if name in wanted] == wanted
     assert all(step.total for step in seen if step.what in wanted)

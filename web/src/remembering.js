@@ -14,6 +14,7 @@ import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
 
 const KEPT = "inerter.document";
 const LINK = "state";
+const READ = 20_000; // [ms] in which it is read that a file is open, as the page shows too
 
 /** The document and what is looked at, as text for a link. @param {Document} document @param {Partial<View>} view */
 async function packed(document, view) {
@@ -158,7 +159,8 @@ async function openStudyFile(store, api, file) {
     return store.say(`${file.name} is not a study file; nothing was changed. ${problems[0]?.sentence ?? ""}`.trim());
   if (!(await beginWith(store, api, study))) return;
   const several = problems.length === 1 ? "one entry needs" : `${problems.length} entries need`;
-  store.say(`${file.name} is open${problems.length ? `; ${several} another value` : ""}.`);
+  store.say(`${file.name} is open${problems.length ? `; ${several} another value` : ""}.`, file.name);
+  setTimeout(() => store.dispatch({ type: "closed", about: file.name }), READ);
 }
 
 /** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is

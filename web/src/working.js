@@ -15,17 +15,25 @@ const SMALL = 4; // coordinates of a vehicle whose best values are found by norm
 const AGAIN = 1000; // [ms] until a server that does not answer is asked again
 const LOOK = 300; // [ms] between two looks at work that goes on
 
-/** The best values of layouts, taken into the document; returns what to tell. @param {Store} store @param {Api} api
+/** The best values of layouts, taken into the document, and the best of several selected; returns what to tell.
+ * @param {Store} store @param {Api} api
  * @param {{study: any, layouts: string[], index: string, method: string}} asked */
 export async function optimise(store, api, asked) {
   const { study, layouts, index, method } = asked;
   const body = { study, layouts, indices: [index], method, methods: [method] };
+  /** @param {any[]} designs */
+  const takeBest = async (designs) => {
+    const gesture = Symbol("best");
+    const told = takeOptima(store, designs, gesture, study);
+    if (layouts.length > 1) await selectBest(store, api, gesture).catch(() => {}); // the values are taken all the same
+    return told;
+  };
   try {
     if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
       const id = await begin(store, api, { kind: "optimise", ...body });
       void ended(store, id).then((job) => {
         if (job?.result && store.get().history.present.study === study)
-          store.say(takeOptima(store, job.result.designs, null, study), "taken");
+          void takeBest(job.result.designs).then((told) => store.say(told, "taken"));
       });
       store.look({ tab: "work" });
       return "Under way: see Jobs. The values are taken when it is done, unless the study changes meanwhile.";
@@ -33,7 +41,7 @@ export async function optimise(store, api, asked) {
     const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);
     if (store.get().history.present.study !== study)
       return "The study was changed meanwhile, and the values are not taken. Press Find best again.";
-    return withSpeeds(takeOptima(store, designs, null, study), speeds);
+    return withSpeeds(await takeBest(designs), speeds);
   } catch (error) {
     return /** @type {Error} */ (error).message;
   }
@@ -268,8 +276,8 @@ export async function findWork(store, api) {
 }
 
 /** @param {any} job */
-const jobOf = ({ id, kind, title, state, begun = null, total, done = 0, sentence, told, found }) => ({
-  id, kind, title, state, begun, share: total ? (done ?? 0) / total : null, sentence: sentence || told || null,
+const jobOf = ({ id, kind, title, study, state, begun = null, total, done = 0, sentence, told, found }) => ({
+  id, kind, title, study, state, begun, share: total ? (done ?? 0) / total : null, sentence: sentence || told || null,
   ...(found ? { found } : {}),
 });
 

@@ -1,9 +1,10 @@
 import assert from "node:assert/strict";
-import { test } from "node:test";
+import { mock, test } from "node:test";
 import { Refusal } from "../src/api.js";
 import { enter, isBeingRead, wronglyTyped } from "../src/entering.js";
 import { freeIn, layoutsWith, numbersOf, unchosenIn } from "../src/library.js";
 import { choicesOf, designOf, questions } from "../src/questions.js";
+import { open } from "../src/remembering.js";
 import { after, empty, entryAt, textOf } from "../src/state/document.js";
 import { createStore, initial } from "../src/state/store.js";
 import { watchFile } from "../src/watching.js";
@@ -211,5 +212,20 @@ test("the file of the command line is looked at once at a time, so that no late 
   } finally {
     Object.assign(globalThis, { addEventListener: listen, setInterval: repeat });
     delete (/** @type {any} */ (globalThis).document);
+  }
+});
+
+test("that a file is open is told for a while", async () => {
+  mock.timers.enable({ apis: ["setTimeout"] });
+  try {
+    const store = createStore();
+    const read = { study: studyWith("b"), kind: "run", problems: [] };
+    const api = /** @type {any} */ ({ post: async (/** @type {string} */ path) => (path === "study/read" ? read : {}) });
+    await open(store, api, [new File([""], "car.toml")]);
+    assert.deepEqual(store.get().messages.map(({ text }) => text), ["car.toml is open."]);
+    mock.timers.tick(60_000);
+    assert.deepEqual(store.get().messages, []);
+  } finally {
+    mock.timers.reset();
   }
 });

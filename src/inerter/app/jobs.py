@@ -23,16 +23,18 @@ _GRACE = 5.0  # seconds that work has to stop at its next check, before its proc
 _LOOK = 0.05  # seconds between two looks at what happened
 _MOST = 200  # pieces of work that are kept
 ENDED = ("done", "failed", "stopped")
+_TOLD = ("id", "kind", "title", "study", "state", "begun", "ended", "sentence")
 _OURS = {"made_by": "inerter serve"}  # in requests: a folder without it is somebody's own, and stays
 
 
 @dataclass
 class Job:
-    """Job: a long computation with its folder and state."""
+    """Job: a long computation with its folder and state; `study` is the title of its study."""
 
     id: str
     kind: str
     title: str
+    study: str
     folder: Path
     state: str = "waiting"
     begun: float | None = None
@@ -46,7 +48,7 @@ class Job:
         progress = next((e for e in reversed(events) if e["event"] == "progress"), {"done": 0, "total": 0, "told": ""})
         found = next((e["found"] for e in reversed(events) if "found" in e), None)
         return {
-            **{key: getattr(self, key) for key in ("id", "kind", "title", "state", "begun", "ended", "sentence")},
+            **{key: getattr(self, key) for key in _TOLD},
             **{key: progress[key] for key in ("done", "total")},
             "told": "" if self.state in ENDED else progress["told"],  # the present step: none once it has ended
             **({"found": found} if found is not None and self.state != "done" else {}),
@@ -87,7 +89,7 @@ class Jobs:
         if len(self.known) >= _MOST:
             raise Refusal(400, f"{_MOST} jobs are waiting. Stop some of them first.")
         name = token_hex(8)
-        job = Job(name, kind, title or KINDS[kind].title_of(request), self.root / name)
+        job = Job(name, kind, title or KINDS[kind].title_of(request), _study_title(request), self.root / name)
         job.folder.mkdir(parents=True)
         (job.folder / REQUEST).write_bytes(encode_json({**request, "kind": kind, "title": job.title, **_OURS}))
         self.known[name] = job
@@ -176,10 +178,16 @@ def _job_of_earlier_server(folder: Path, request: Mapping[str, Any]) -> Job:
     if last.get("event") not in ENDED:
         last = {"event": "stopped", "sentence": "The server ended before this was done.", "time": last.get("time")}
         write_last(folder, last)
-    job = Job(folder.name, request["kind"], request["title"], folder, last["event"], sentence=last.get("sentence", ""))
+    job = Job(folder.name, request["kind"], request["title"], _study_title(request), folder, last["event"])
+    job.sentence = last.get("sentence", "")
     job.begun, job.ended = (events[0]["time"] if events else None), last.get("time")
     job.over.set()
     return job
+
+
+def _study_title(request: Mapping[str, Any]) -> str:
+    title = request.get("study", {}).get("title")
+    return title if isinstance(title, str) else ""
 
 
 def result_of(job: Job) -> bytes:

@@ -86,10 +86,8 @@ class WorkKind:
     subject: Callable[[Request], str] | None = None
 
     def title_of(self, request: Request) -> str:
-        """Title of a job: what its request is about, and the title of the study."""
-        own = self.subject(request) if self.subject else ""
-        title = request.get("study", {}).get("title")
-        return f"{own or self.title}: {title}" if isinstance(title, str) and title else own or self.title
+        """Title of a job: what its request is about."""
+        return (self.subject(request) if self.subject else "") or self.title
 
 
 def _best_values(request: Request) -> str:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.stats import qmc
 
-from inerter.formatting import format_share
 from inerter.identification.options import POINTS
 from inerter.identification.problem import FitProblem, map_problems
 from inerter.work.progress import counter, part, report
@@ -58,7 +57,7 @@ def search(
         shorter = replace(problem, horizon=horizon)
         accuracy = 1e-9 if horizon == 1.0 else _ROUGH
         candidates = distinct(candidates, costs)[:kept]
-        what = f"search on {'all' if horizon == 1.0 else format_share(horizon)} of the information"
+        what = f"search, stage {stage + 1} of {len(stages)}: start"
         tasks = [(shorter, candidate) for candidate in candidates]
         tell = counter(what, len(tasks), part(progress, done[stage], done[stage + 1]))
         found = map_problems(partial(_improve_candidate, evaluations, accuracy), tasks, progress=tell)

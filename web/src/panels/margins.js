@@ -20,7 +20,7 @@ export function marginTold(value) {
   const found = (value?.break_even ?? []).filter((/** @type {any} */ each) => typeof each.value === "number");
   const first = found.find((/** @type {any} */ each) => each.standard_error > 0) ?? found[0];
   if (!first) return value ? "No break-even value" : "Not computed";
-  return first.short.replace(/ (?=\S+$)/, "\u00a0"); // the unit stays with its number
+  return first.short;
 }
 
 const NAME = "margins";

@@ -23,7 +23,9 @@ const MARGIN = 14;
 const TERMINAL = 1.6;
 const [SMALLEST, LARGEST] = [0.7, 1.7]; // [px] a point of the drawing
 const MANY = 8; // elements from where a drawing may be laid across the page, and has no values in it
-const VALUE = 58; // [pt] room of a value in the drawing
+const VALUE = 66; // [pt] room of a value in the drawing
+const [FINE, COARSE] = [10, 13]; // [pt] of type: larger in tall drawings, which are drawn smaller
+const LINES = 14; // of type, in the height of a drawing
 const FAR = 6; // [px] from where a press is a drag
 
 /** @param {{store: Store, api: Api}} props */
@@ -328,7 +330,8 @@ function Schematic({ editing, tree, path, stale }) {
   return html`<div class=${`drawing ${stale ? "stale" : ""}`} data-keys="Drawing">
     <svg ref=${figure} viewBox=${`${-plan.left - MARGIN} ${-MARGIN} ${width} ${height}`}
       style=${{ width: "100%", height: "100%", minWidth: `${state.view.across ? 0 : SMALLEST * width}px`,
-        minHeight: `${SMALLEST * height}px`, maxHeight: `${LARGEST * height}px` }} role="group"
+        minHeight: `${SMALLEST * height}px`, maxHeight: `${LARGEST * height}px`,
+        fontSize: `${Math.min(COARSE, Math.max(FINE, height / LINES))}px` }} role="group"
           aria-label=${`Network ${written(tree)}`}
       onKeyDown=${(/** @type {KeyboardEvent} */ event) => onKey(event, editing)}
       onDragOver=${(/** @type {DragEvent} */ event) => {
@@ -381,7 +384,7 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
 /** A name as a symbol. @param {string} name */
 function subscripted(name) {
   const [symbol, subscript] = symbolParts(name);
-  return html`${symbol}<tspan dy="2" font-size="7.5">${subscript}</tspan>`;
+  return html`${symbol}<tspan dy="2" font-size="0.75em">${subscript}</tspan>`;
 }
 
 /** Whether the keyboard enters the drawing at this element: what is selected, or the first of it.

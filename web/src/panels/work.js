@@ -84,11 +84,13 @@ export const RUNNING = ["waiting", "running"];
 
 /** What the work is, the button that ends it, and how far it is: of what moves in large steps the time moves.
  * @param {{store: Store, api: Api, job: Job}} props */
-export function JobHead({ store, api, job: { id, title, kind, state, share, begun } }) {
+export function JobHead({ store, api, job: { id, title, study, kind, state, share, begun } }) {
   const resumes = ["stopped", "failed"].includes(state)
     && kindsOf(store.get()).some((each) => each.key === kind && each.resumes);
   const running = RUNNING.includes(state);
-  return html`<div class="row"><b>${title}</b> <span class="state">${state}</span>
+  const isOther = study && study !== store.get().history.present.study.title;
+  return html`<div class="row"><b>${title}</b>${isOther && html` <span class="quiet">of ${study}</span>`}
+      <span class="state">${state}</span>
       ${resumes && html`<button type="button" onClick=${() => resume(store, api, id)}>Resume</button>`}
       <button type="button" onClick=${() => stop(store, api, id)}>${running ? "Stop" : "Forget"}</button></div>
     ${running && html`<p class="row progress">

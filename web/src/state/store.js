@@ -16,9 +16,10 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does.
  * @typedef {{label: string, act: () => void}} Offer */
 /** @typedef {{about: string, text: string, offer?: Offer}} Message */
-/** @typedef {{id: string, kind: string, title: string, state: "waiting" | "running" | "done" | "stopped" | "failed",
- * begun: number | null, share: number | null, sentence: string | null, found?: any, result: any}} Job  `begun`: in
- * seconds since 1970, by the clock of the server; `found`: a result so far */
+/** @typedef {{id: string, kind: string, title: string, study: string,
+ * state: "waiting" | "running" | "done" | "stopped" | "failed", begun: number | null, share: number | null,
+ * sentence: string | null, found?: any, result: any}} Job  `study`: its title; `begun`: in seconds since 1970, by the
+ * clock of the server; `found`: a result so far */
 /** @typedef {{path: Path, tab: string, theme: "auto" | "light" | "dark", method: string, index: string, speed: number,
  * playing: boolean, compared: string[] | null, against: string, seconds: number, seed: number, output: string,
  * across: boolean, tall: boolean, ghosts: string[], response: string}} View  `index`: by which layouts are ranked, the

@@ -41,8 +41,7 @@ function standing({ scene: { main, column } }, { moment: { pose }, motion }, lar
   if (main.pitch !== null) parts.push(`${inWords(main.pitch)} ${degrees(main.pitch)}°`);
   const rolls = main.roll !== null && (motion.coordinates[main.roll] ?? []).some((value) => Math.abs(value) > STILL);
   if (main.roll !== null && rolls) parts.push(`roll ${degrees(main.roll)}°`);
-  const how = parts.join(", ");
-  const lines = main.roll === null ? [`${how}, ${large}`] : [how, large];
+  const lines = [parts.join(", "), large];
   return main.roll !== null && !rolls ? [...lines, "roll 0: same road on both sides"] : lines;
 }
 

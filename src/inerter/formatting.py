@@ -397,6 +397,18 @@ def _join_units(text: str) -> str:
     return _QUANTITY.sub(lambda found: found[0].replace(" ", _NO_BREAK_SPACE), parts)
 
 
+def format_duration(seconds: float) -> str:
+    """Duration for readers, in the largest unit of which it has at least two.
+
+    >>> format_duration(119.0), format_duration(120.0)
+    ('119 s', '2 min')
+    """
+    for unit, size in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 2.0 * size:
+            return f"{round(seconds / size)} {unit}"
+    return f"{round(seconds)} s"
+
+
 def format_list(words: Sequence[str]) -> str:
     """Words one after another, as a sentence has them."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

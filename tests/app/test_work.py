@@ -14,8 +14,9 @@ from starlette.testclient import TestClient
 
 from inerter.app import jobs
 from inerter.app.kinds import KINDS, WorkKind
-from inerter.app.working import events_of
+from inerter.app.working import _Telling, events_of
 from inerter.files.study import checking
+from inerter.work.progress import ProgressStep
 
 LONG = changed(study={"sweep": {"k": {"from": "10 kN/m", "to": "30 kN/m", "points": 100_000}}, "indices": ["J1"]})
 
@@ -81,7 +82,7 @@ def test_a_sweep_that_is_being_prepared_tells_how_far_it_is_and_stops(
     while len(told := _so_far(server, number)) < 4:
         assert time.monotonic() < deadline
         time.sleep(0.02)
-    assert told[0] == "preparing 0 of 400"
+    assert "preparing 0 of 400" in told
     assert len({*told}) == len(told)
     client.delete(f"/api/work/{number}")
     asked = time.monotonic()
@@ -176,6 +177,24 @@ def test_a_job_is_called_by_what_it_is_about(server: Any, asked: dict[str, Any],
         assert (job["title"], job["study"]) == (subject, told)
     assert server.jobs.add(kind, asked).title == subject
     assert server.jobs.add(kind, asked, "My own").title == "My own"
+
+
+def test_the_running_step_is_told_with_the_time_that_is_left(tmp_path: Path) -> None:
+    """Where the share is known by small parts, and not at the beginning."""
+    telling = _Telling(tmp_path)
+    for done, total, seconds, left in (
+        *((50, 1000, 10.0, ""), (250, 1000, 10.0, ", about 30 s left"), (500, 1000, 600.0, ", about 10 min left")),
+        (1, 4, 10.0, ""),
+    ):
+        telling(done, total, "")
+        telling.last = 0.0
+        telling.step(ProgressStep("starts", 3, 16, seconds=seconds))
+        telling.last = 0.0
+        telling(done, total, "")
+        events, _ = events_of(tmp_path)
+        assert [event["told"] for event in events[-2:]] == [f"starts 3 of 16{left}"] * 2
+    telling(4, 4, "drawing")
+    assert events_of(tmp_path)[0][-1]["told"] == "drawing"
 
 
 def test_a_kind_that_a_person_may_begin_says_what_it_does(client: TestClient) -> None:

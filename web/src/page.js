@@ -17,7 +17,7 @@ import { ValuesPanel, otherProblems, problemsOf } from "./panels/values.js";
 import { MotionPanel } from "./panels/motion.js";
 import { WorkPanel } from "./panels/work.js";
 import { Clock, Moving } from "./parts/clock.js";
-import { Chip, Field, Select, formHandler } from "./parts/controls.js";
+import { Chip, Field, Select, bringIntoRow, formHandler } from "./parts/controls.js";
 import { html, useEffect, useMemo, useState } from "./parts/html.js";
 import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
 import { answerOf } from "./questions.js";
@@ -233,12 +233,6 @@ function Tabs({ store, api }) {
         ? html`<${SearchFirst} layout=${layout} />`
         : html`<${shown.Panel} store=${store} api=${api} />`}</div>
   </section>`;
-}
-
-/** Scrolls a row of tabs, and nothing else, so that one of them is seen. @param {HTMLElement | null} tab */
-function bringIntoRow(tab) {
-  const row = tab?.parentElement;
-  if (row) row.scrollLeft = tab.offsetLeft - row.offsetLeft - (row.clientWidth - tab.offsetWidth) / 2;
 }
 
 const THEMES = /** @type {const} */ (["auto", "light", "dark"]);

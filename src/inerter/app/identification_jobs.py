@@ -36,10 +36,10 @@ def identify(body: Body, folder: Path, tell: Tell) -> Any:
         tell(number, len(records), f"reading {path.name}")
         readings.append(read(path, request.record))
     with open_results(WriteMode(folder / RESULTS, "identify", RESULT_NAMES, tuple(records))) as results:
-        found = run_identification(readings, request, lambda part: tell(round(1000.0 * part), 1000, "fitting"))
+        found = run_identification(readings, request, lambda part: tell(round(900.0 * part), 1000, ""))
         write_fit(found, results.draft)
         results.publish()
-        write_identification(found, results.draft, lambda part: tell(round(1000.0 * part), 1000, "drawing"))
+        write_identification(found, results.draft, lambda part: tell(round(900.0 + 100.0 * part), 1000, "drawing"))
     answer: dict[str, Any] = typeset_sentences(
         {
             **identification_data(found),

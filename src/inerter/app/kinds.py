@@ -22,7 +22,7 @@ class Tell(Protocol):
     """Report of how much is done, of how much, and what; with a result so far, if there is one."""
 
     def __call__(self, done: int, total: int, told: str, found: Any = None) -> None:
-        """Raises `JobStopped` if the job is to stop."""
+        """An empty `told` stands for the running step. Raises `JobStopped` if the job is to stop."""
 
 
 def report_nothing(done: int, total: int, told: str, found: Any = None) -> None:

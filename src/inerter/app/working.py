@@ -14,11 +14,14 @@ from inerter.app.calls import run_call
 from inerter.app.kinds import KINDS, JobStopped
 from inerter.app.wire import decode_json, encode_json
 from inerter.atomic_io import atomic_write
+from inerter.formatting import format_duration
 from inerter.work.progress import ProgressStep, progress
 
 REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "stop"
 _OFTEN = 0.05  # seconds between two lines about progress
 _SELDOM = 0.9  # the same about what is under way, where nothing else is told
+_FINE = 100  # parts from where the remaining time is told, ...
+_EARLY = 0.1  # ... once this share is done
 
 
 @dataclass
@@ -27,6 +30,7 @@ class _Telling:
     last: float = 0.0
     count: tuple[int, int] = (0, 0)
     found: Any = None  # result so far that was told last
+    running: str = ""  # the step that is running
 
     def __call__(self, done: int, total: int, told: str, found: Any = None) -> None:
         stop = (self.folder / STOP).exists()
@@ -37,7 +41,9 @@ class _Telling:
             self.last = now
             news = {"found": found} if is_new else {}
             self.found = found if is_new else self.found
-            write_event(self.folder, {"event": "progress", "done": done, "total": total, "told": told, **news})
+            write_event(
+                self.folder, {"event": "progress", "done": done, "total": total, "told": told or self.running, **news}
+            )
         if stop:
             raise JobStopped
 
@@ -45,8 +51,14 @@ class _Telling:
         """Write the progress of the running step, at most every `_SELDOM` seconds; raises `JobStopped` on request."""
         if (self.folder / STOP).exists():
             raise JobStopped
-        if not step.over and time.monotonic() - self.last > _SELDOM:
-            self(*self.count, f"{step}, {round(step.seconds)} s")
+        if step.over:
+            return
+        done, total = self.count
+        is_known = total >= _FINE and done >= _EARLY * total
+        left = f", about {format_duration(step.seconds * (total - done) / done)} left" if is_known else ""
+        self.running = f"{step}{left}"
+        if time.monotonic() - self.last > _SELDOM:
+            self(done, total, self.running)
 
 
 def work(folder: str) -> dict[str, Any]:

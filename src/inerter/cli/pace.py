@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from inerter.cli.pulse import duration
+from inerter.formatting import format_duration
 from inerter.work.progress import ProgressStep
 
 _POWER = 2.5  # of the number of free values, with which the work on a design rises
@@ -82,7 +82,7 @@ class Pace:
         span = self.range() if any(self.left_of.values()) else None
         if span is None:
             return ""
-        low, high = map(duration, span)
+        low, high = map(format_duration, span)
         then = self.further and f", then {self.further}"
         return f", about {low} left{then}" if low == high else f", {low} to {high} left{then}"
 

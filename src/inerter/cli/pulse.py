@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from inerter.formatting import format_duration
 from inerter.work.progress import Listener, ProgressStep, listening
 
 _SILENCE = 1.8  # seconds after which something is said, so that two have not gone by when it can be read
@@ -41,7 +42,7 @@ class Pulse:
         now = time.monotonic()
         factor = next((f for end, f in _THEN.items() if now - self.begun < end), _SELDOM)
         if now - self.printed >= _SILENCE * factor:
-            self.say(f"{self.words(step)}, {duration(now - self.begun)}")
+            self.say(f"{self.words(step)}, {format_duration(now - self.begun)}")
 
     def say(self, text: str) -> None:
         """Print a line."""
@@ -79,11 +80,3 @@ def alive() -> Iterator[None]:
     """Pulse of a command that prints nothing else about its progress."""
     with pulse(lambda step: f"inerter: {step}"):
         yield
-
-
-def duration(seconds: float) -> str:
-    """Duration for readers, in the largest unit of which it has at least two."""
-    for unit, size in (("h", 3600.0), ("min", 60.0)):
-        if seconds >= 2.0 * size:
-            return f"{round(seconds / size)} {unit}"
-    return f"{round(seconds)} s"

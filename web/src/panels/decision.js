@@ -1,7 +1,7 @@
 // The decision across the top: vehicle, goal, strut, what it bears, each with its present answer, and the verdict.
 
-import { html, useLayoutEffect, useRef, useState } from "../parts/html.js";
-import { Select } from "../parts/controls.js";
+import { html, useEffect, useLayoutEffect, useRef, useState } from "../parts/html.js";
+import { Select, bringIntoRow } from "../parts/controls.js";
 import { allDesigns, answerOf, designOf, goalOf, soughtAnswer, staleLayouts } from "../questions.js";
 import { isSearched, methodChoice, searchedLayouts, unchosenIn } from "../library.js";
 import { isBlank } from "../state/document.js";
@@ -20,6 +20,7 @@ export function DecisionLine({ store }) {
   const state = store.get();
   const blank = isBlank(state.history.present);
   const present = blank ? 1 : state.view.tab === "margins" ? 4 : 3;
+  useEffect(() => bringIntoRow(document.querySelector(".step[aria-current]")), [present]);
   /** @param {number} number @param {string} title @param {string} answer */
   const step = (number, title, answer) => html`<div class="step"
     aria-current=${present === number ? "step" : undefined}><button type="button" id=${`step-${number}`}

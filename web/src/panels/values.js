@@ -193,6 +193,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
   const { unit, path: place, name } = row;
   const id = idOf(row);
   const names = own(state.about?.named_values, unit);
+  const named = Object.keys(names ?? {}).find((each) => names[each] === text);
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
@@ -235,7 +236,8 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      names=${names} told=${free ? briefIn(state.about, text, unit) : brief(text, state.about, unit)}
+      names=${names} told=${named ? `class ${named}` : (free ? briefIn(state.about, text, unit)
+        : brief(text, state.about, unit))}
       drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
         store.dispatch({ type: "rested" })))}
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />

@@ -17,6 +17,13 @@ export const formHandler = (act) => (event) => {
 export const showNewest = (selector) => setTimeout(() => requestAnimationFrame(() =>
   document.querySelector(selector)?.scrollIntoView({ block: "start" })));
 
+/** Scrolls a row, such as that of the tabs, and nothing else, so that one of its children is seen.
+ * @param {HTMLElement | null} child */
+export function bringIntoRow(child) {
+  const row = child?.parentElement;
+  if (row) row.scrollLeft = child.offsetLeft - row.offsetLeft - (row.clientWidth - child.offsetWidth) / 2;
+}
+
 /** The name that is picked, or the first where none of them is, and the function that picks one.
  * @param {string[]} names @returns {[string | undefined, (name: string) => void]} */
 export function useChoice(names) {

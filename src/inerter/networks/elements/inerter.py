@@ -26,7 +26,9 @@ class Inerter(Element):
     symbol: ClassVar[str] = "b"
     quantity: ClassVar[str] = "inertance"
     unit: ClassVar[str] = "kg"
-    sentence: ClassVar[str] = "Force over the relative acceleration of its ends."
+    sentence: ClassVar[str] = (
+        "Force over the relative acceleration of its ends; the mass of the device belongs to the bodies there."
+    )
     example: ClassVar[str] = "300 kg"
     linear: ClassVar[LinearRole] = LinearRole.MASS
     drawing: ClassVar[tuple[SymbolLine, ...]] = (  # a rod that turns a flywheel in a box

@@ -142,6 +142,22 @@ def test_break_even_values_of_another_layout_than_the_best_are_not_taken_for_its
         assert page.get_by_role("button", name="Select S3", exact=True).count() == 0
 
 
+def test_jobs_that_another_panel_began_show_their_results_too(served: Served, visitors: Callable[..., Visitor]) -> None:
+    window = visitors(served)
+    job = {"study": "", "state": "done", "begun": 0.0, "done": 1, "total": 1, "told": "", "sentence": ""}
+    jobs = [{**job, "id": kind, "kind": kind, "title": kind} for kind in ("margins", "identify")]
+    found = {"break_even": [{"parameter": "f", "sentence": "Up to 9 N.", "status": "ok"}]}
+    window.page.route("**/api/work", lambda route: route.fulfill(json={"work": jobs}))
+    window.page.route(
+        "**/api/work/*/result", lambda route: route.fulfill(json=found if "margins" in route.request.url else {})
+    )
+    window.visit()
+    window.page.click("#tab-work")
+    window.page.locator(".job .margins", has_text="Up to 9 N.").wait_for()
+    window.page.locator(".job").get_by_role("button", name="See Rig").click()
+    window.page.wait_for_selector("#tab-rig[aria-selected=true]")
+
+
 def test_a_constraint_on_a_travel_says_that_it_is_on_its_rms_value(visitor: Visitor) -> None:
     """60 mm of travel are no 60 mm r.m.s."""
     page = visitor.page

@@ -14,7 +14,7 @@ import { openStudy as beginWith, takeDevice, takeFitted } from "./working.js";
 
 const KEPT = "inerter.document";
 const LINK = "state";
-const READ = 20_000; // [ms] in which it is read that a file is open, as the page shows too
+const READ = 20_000; // [ms] in which a message is read of what the page shows too
 
 /** The document and what is looked at, as text for a link. @param {Document} document @param {Partial<View>} view */
 async function packed(document, view) {
@@ -151,6 +151,12 @@ export function studiesFirst(store, files) {
 /** Whether a table is one of results, not a record. @param {File} file */
 const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
 
+/** Gives a message of what the page shows too. @param {Store} store @param {string} text @param {string} about */
+function tellAWhile(store, text, about) {
+  store.say(text, about);
+  setTimeout(() => store.dispatch({ type: "closed", about }), READ);
+}
+
 /** @param {Store} store @param {Api} api @param {File} file */
 async function openStudyFile(store, api, file) {
   const { study, kind, problems } = await api.post("study/read", { text: await file.text(), name: file.name });
@@ -159,8 +165,7 @@ async function openStudyFile(store, api, file) {
     return store.say(`${file.name} is not a study file; nothing was changed. ${problems[0]?.sentence ?? ""}`.trim());
   if (!(await beginWith(store, api, study))) return;
   const several = problems.length === 1 ? "one entry needs" : `${problems.length} entries need`;
-  store.say(`${file.name} is open${problems.length ? `; ${several} another value` : ""}.`, file.name);
-  setTimeout(() => store.dispatch({ type: "closed", about: file.name }), READ);
+  tellAWhile(store, `${file.name} is open${problems.length ? `; ${several} another value` : ""}.`, file.name);
 }
 
 /** A simulated vehicle is opened as a study that asks for the first index; a device of a rig joins the study that is
@@ -203,7 +208,7 @@ async function openRecord(store, api, file) {
     told += ` It is in the tab Rig, and the example “${study.title}” is open, to try its device in.`;
   }
   showNewest(".tabs");
-  store.say(told, file.name);
+  tellAWhile(store, told, file.name);
 }
 
 const BEFORE = "inerter.opened";

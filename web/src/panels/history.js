@@ -9,7 +9,7 @@ import { layoutColours } from "../plots/colours.js";
 import { answerOf, designOf } from "../questions.js";
 import { clock } from "../state/clock.js";
 import { aligned, printed } from "../state/scale.js";
-import { problemsOf } from "./values.js";
+import { NoCurves } from "./values.js";
 
 /** @import { Store } from "../state/store.js" */
 /** @import { Document } from "../state/document.js" */
@@ -22,7 +22,6 @@ import { problemsOf } from "./values.js";
 export function HistoryPanel({ store }) {
   const state = store.get();
   const document = state.history.present;
-  const faulty = problemsOf(state).length > 0;
   const answer = answerOf(state, "history");
   const { value, sentence } = answer;
   /** @type {{name: string, label: string}[]} */
@@ -46,8 +45,7 @@ export function HistoryPanel({ store }) {
   return html`<div class=${`plot-panel${useLate(answer.before) ? " stale" : ""}`} aria-busy=${answer.is === "coming"}>
     <${Unchosen} state=${state} designs=${[designOf(document)]} />
     <${Doubts} members=${[{ of: "the motion", status: value?.status, message: value?.message }]} />
-    ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
-      : sentence}</p>`}
+    <${NoCurves} state=${state} sentence=${sentence} />
     <${Plot} plot=${plot} current=${answer.is === "current"} cursor=${clock}>${controls}<//>
   </div>`;
 }

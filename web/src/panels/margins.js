@@ -68,7 +68,9 @@ function Best({ store }) {
 }
 
 /** The result of a job. @param {{job: Job}} props */
-export const MarginsResult = ({ job }) => html`<${Margins} value=${job.result} />`;
+export function MarginsResult({ job }) { // a declaration, since the module of jobs names it before this one has run
+  return html`<${Margins} value=${job.result} />`;
+}
 
 /** @param {{value: any}} props */
 function Margins({ value: { break_even: rows = [], speeds = [], scatter, caveats = [] } }) {

@@ -9,7 +9,7 @@ import { layoutColours, numberedColour } from "../plots/colours.js";
 import { answerOf, baselineOf, choicesOf, drawnIndex, ghostPanel, ghostsOf, isRightStill, shownDesigns }
   from "../questions.js";
 import { indicesIn } from "../state/document.js";
-import { problemsOf } from "./values.js";
+import { NoCurves } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
 /** @import { Document } from "../state/document.js" */
@@ -48,7 +48,6 @@ export function ResponsePanel({ store }) {
   useShown("response", state);
   const both = parts === "both";
   const current = [shown, ...ghosts].every(({ is }) => is === "current");
-  const faulty = problemsOf(state).length > 0;
   const controls = html`<${Select} aria-label="Index" value=${index} choices=${indicesIn(document.study)}
       set=${(/** @type {string} */ response) => store.look({ response })} />
     ${labels.length > 1 && html`<${Select} aria-label="Output" value=${label} set=${setLabel}
@@ -59,8 +58,7 @@ export function ResponsePanel({ store }) {
     <${Being} shown=${shown} />`;
   return html`<div class="plot-panel" aria-busy=${shown.is === "coming"}>
     <${Unchosen} state=${state} designs=${shownDesigns(document)} />
-    ${sentence && html`<p class="problem">${faulty ? "There are no curves: see what is wrong with the study."
-      : sentence}</p>`}
+    <${NoCurves} state=${state} sentence=${sentence} />
     ${both && html`<div class="row plot-tools">${controls}</div>`}
     <div class=${both ? "plots two" : "plots"}>
       ${parts !== "phase" && html`<${Plot} key="gain" plot=${plots?.gain ?? null} current=${current}

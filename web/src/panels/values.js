@@ -335,6 +335,10 @@ export function Entry({ id, label, text, told = brief(text), wrong = false, done
 /** The problems of the study. @param {State} state @returns {Problem[]} */
 export const problemsOf = (state) => answerOf(state, "check").value?.problems ?? [];
 
+/** Why there are no curves. @param {{state: State, sentence: string | null}} props */
+export const NoCurves = ({ state, sentence }) => sentence && html`<p class="problem">${problemsOf(state).length > 0
+  ? "There are no curves: see what is wrong with the study." : sentence}</p>`;
+
 /** The problems of the study that no field of the page tells. @param {State} state */
 export function otherProblems(state) {
   const { layout } = state.history.present;

@@ -34,6 +34,7 @@ const VIEWS = {
     lacks: (state) => searchedLayouts(state).length === 0, Remedy: AddFreeNetwork },
   optimise: { Result: OptimumResult },
   margins: { Result: MarginsResult },
+  identify: { Result: InRig },
 };
 
 /** @param {{store: Store, api: Api}} props */
@@ -123,6 +124,11 @@ function OptimumResult({ store, job: { result } }) {
     ${designs.map((design) => html`<p key=${`${design.layout} ${design.index}`}>
       ${valuesIn(store.get().about, design.texts)}
       <${Take} store=${store} design=${design}>Take it into the editor<//></p>`)}`;
+}
+
+/** Leads to what a fit has found. @param {{store: Store}} props */
+function InRig({ store }) {
+  return html`<button type="button" class="link" onClick=${() => store.look({ tab: "rig" })}>See Rig</button>`;
 }
 
 /** A button that takes a design into the editor. @param {{store: Store, design: any, children: any}} props */

@@ -39,25 +39,20 @@ function nameBody(made, own, moment, into) {
   };
   const words = of.kind === "table" ? "table" : inWords(of.name);
   const room = Math.min(-from, to); // to either side of the mark of its middle
-  const fits = LETTER * Math.max(words.length, of.weight.length) + 28 < room && thick >= 15;
-  if (fits && of.kind !== "occupant" && !made.scene.oblique) {
-    into.push(text(...at(from + 12), words), text(...at(to - 12), of.weight, "text", "end"));
-    return;
-  }
-  if (made.scene.oblique && of.kind !== "occupant") {
-    into.push(text(at(0)[0] + 12, at(0)[1], `${words} ${of.weight}`, "beside"));
-    return;
-  }
-  if (made.scene.oblique) {
-    const [x, y] = at(-6);
-    into.push(text(x, y - 0.52 * thick - 6, words, "text", "middle"));
-    return;
-  }
+  const isOccupant = of.kind === "occupant";
   const wide = LETTER * Math.max(words.length, of.weight.length) + 8;
-  const left = made.project(of.x, of.y, 0)[0] + to + wide > made.width || (made.scene.column && of.kind === "body");
-  const [x, y] = at(left ? from - 7 : of.kind === "occupant" ? 26 : to + 7);
-  const anchor = left ? "end" : "start";
-  into.push(text(x, y - 7, words, "text", anchor), text(x, y + 8, of.weight, "quiet", anchor));
+  if (made.scene.oblique) {
+    const [x, y] = at(isOccupant ? -6 : 0);
+    into.push(isOccupant ? text(x, y - 0.52 * thick - 6, words, "text", "middle")
+      : text(x + 12, y, `${words} ${of.weight}`, "beside"));
+  } else if (wide + 20 < room && thick >= 15 && !isOccupant) {
+    into.push(text(...at(from + 12), words), text(...at(to - 12), of.weight, "text", "end"));
+  } else {
+    const left = made.project(of.x, of.y, 0)[0] + to + wide > made.width || (made.scene.column && of.kind === "body");
+    const [x, y] = at(left ? from - 7 : isOccupant ? 26 : to + 7);
+    const anchor = left ? "end" : "start";
+    into.push(text(x, y - 7, words, "text", anchor), text(x, y + 8, of.weight, "quiet", anchor));
+  }
 }
 
 /** @param {Layout} made @param {Tyre} tyre @param {Moment} moment @param {Shape[]} into */

@@ -179,22 +179,27 @@ def test_a_job_is_called_by_what_it_is_about(server: Any, asked: dict[str, Any],
     assert server.jobs.add(kind, asked, "My own").title == "My own"
 
 
-def test_the_running_step_is_told_with_the_time_that_is_left(tmp_path: Path) -> None:
-    """Where the share is known by small parts, and not at the beginning."""
-    telling = _Telling(tmp_path)
-    for done, total, seconds, left in (
-        *((50, 1000, 10.0, ""), (250, 1000, 10.0, ", about 30 s left"), (500, 1000, 600.0, ", about 10 min left")),
+@pytest.mark.parametrize(
+    ("done", "total", "seconds", "left"),
+    [
+        (50, 1000, 10.0, ""),
+        (250, 1000, 10.0, ", about 30 s left"),
+        (500, 1000, 600.0, ", about 10 min left"),
+        (1000, 1000, 9.0, ""),
         (1, 4, 10.0, ""),
-    ):
-        telling(done, total, "")
+    ],
+)
+def test_the_running_step_is_told_with_the_time_that_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, done: int, total: int, seconds: float, left: str
+) -> None:
+    """Where many small parts tell it, and not at the beginning; a step that is repeated is not told again."""
+    monkeypatch.setattr("inerter.app.working.time.monotonic", lambda: 1e5 + seconds)
+    telling, step = _Telling(tmp_path, count=(done, total), begun=(1e5, 0)), ProgressStep("starts", 3, 16)
+    for tell in (lambda: telling.step(step), lambda: telling(done, total, "drawing"), lambda: telling.step(step)):
         telling.last = 0.0
-        telling.step(ProgressStep("starts", 3, 16, seconds=seconds))
-        telling.last = 0.0
-        telling(done, total, "")
-        events, _ = events_of(tmp_path)
-        assert [event["told"] for event in events[-2:]] == [f"starts 3 of 16{left}"] * 2
-    telling(4, 4, "drawing")
-    assert events_of(tmp_path)[0][-1]["told"] == "drawing"
+        tell()
+    told = [event["told"] for event in events_of(tmp_path)[0]]
+    assert told == [f"starts 3 of 16{left}", f"drawing{left}", f"drawing{left}"]
 
 
 def test_a_kind_that_a_person_may_begin_says_what_it_does(client: TestClient) -> None:

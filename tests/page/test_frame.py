@@ -146,11 +146,13 @@ def test_jobs_that_another_panel_began_show_their_results_too(served: Served, vi
     window = visitors(served)
     job = {"study": "", "state": "done", "begun": 0.0, "done": 1, "total": 1, "told": "", "sentence": ""}
     jobs = [{**job, "id": kind, "kind": kind, "title": kind} for kind in ("margins", "identify")]
-    found = {"break_even": [{"parameter": "f", "sentence": "Up to 9 N.", "status": "ok"}]}
+    found = {
+        "margins": {"break_even": [{"parameter": "f", "sentence": "Up to 9 N.", "status": "ok"}]},
+        "identify": {"model": "friction", "status": "failed", "shown": {}},
+    }
     window.page.route("**/api/work", lambda route: route.fulfill(json={"work": jobs}))
-    window.page.route(
-        "**/api/work/*/result", lambda route: route.fulfill(json=found if "margins" in route.request.url else {})
-    )
+    for kind, result in found.items():
+        window.page.route(f"**/api/work/{kind}/result", lambda route, result=result: route.fulfill(json=result))
     window.visit()
     window.page.click("#tab-work")
     window.page.locator(".job .margins", has_text="Up to 9 N.").wait_for()

@@ -95,7 +95,8 @@ def test_networks_of_a_search_are_taken_into_the_editor(served: Served, searchin
     job_row = page.locator(".job[data-state=done]", has_text="Search").first
     job_row.locator("circle.point").first.wait_for(state="attached")
     assert any(
-        "the smallest network within 1 %" in sentence and "% worse" in sentence for sentence in found["sentences"]
+        "the smallest network within 1\xa0%" in sentence and "\xa0% worse" in sentence
+        for sentence in found["sentences"]
     )
     for sentence in found["sentences"]:
         job_row.locator("p", has_text=sentence).wait_for()

@@ -21,7 +21,7 @@ REQUEST, EVENTS, RESULT, STOP = "request.json", "events.jsonl", "result.json", "
 _OFTEN = 0.05  # seconds between two lines about progress
 _SELDOM = 0.9  # the same about what is under way, where nothing else is told
 _FINE = 100  # parts from where the remaining time is told, ...
-_EARLY = 0.1  # ... once this share is done
+_EARLY = 0.2  # ... once this share is done
 
 
 @dataclass
@@ -29,21 +29,24 @@ class _Telling:
     folder: Path
     last: float = 0.0
     count: tuple[int, int] = (0, 0)
+    begun: tuple[float, int] | None = None  # when the first part was done, and how many were then
     found: Any = None  # result so far that was told last
-    running: str = ""  # the step that is running
+    running: str = ""  # what is under way
+    heard: str = ""  # the last step
 
     def __call__(self, done: int, total: int, told: str, found: Any = None) -> None:
         stop = (self.folder / STOP).exists()
         now = time.monotonic()
-        self.count = done, total
+        self.count, self.running = (done, total), told or self.running
+        if self.begun is None and done > 0:
+            self.begun = now, done
         is_new = found is not None and found != self.found
         if now - self.last > _OFTEN or done == total or (stop and is_new):
             self.last = now
-            news = {"found": found} if is_new else {}
-            self.found = found if is_new else self.found
-            write_event(
-                self.folder, {"event": "progress", "done": done, "total": total, "told": told or self.running, **news}
-            )
+            event = {"event": "progress", "done": done, "total": total, "told": f"{self.running}{self._left(now)}"}
+            if is_new:
+                event["found"] = self.found = found
+            write_event(self.folder, event)
         if stop:
             raise JobStopped
 
@@ -53,12 +56,19 @@ class _Telling:
             raise JobStopped
         if step.over:
             return
-        done, total = self.count
-        is_known = total >= _FINE and done >= _EARLY * total
-        left = f", about {format_duration(step.seconds * (total - done) / done)} left" if is_known else ""
-        self.running = f"{step}{left}"
+        if str(step) != self.heard:  # a step is repeated while the job is at something else, such as figures
+            self.heard = self.running = str(step)
         if time.monotonic() - self.last > _SELDOM:
-            self(done, total, self.running)
+            self(*self.count, "")
+
+    def _left(self, now: float) -> str:
+        """Remaining time in words, where many small parts tell it; compilation before the first one does not count."""
+        done, total = self.count
+        if self.begun is None or total < _FINE or done == total or done - self.begun[1] < _EARLY * total:
+            return ""
+        since, first = self.begun
+        seconds = (now - since) * (total - done) / (done - first)
+        return f", about {format_duration(seconds)} left" if seconds >= 1.0 else ""
 
 
 def work(folder: str) -> dict[str, Any]:

@@ -264,6 +264,14 @@ def test_check_says_what_linear_analysis_leaves_out(tmp_path: Path, capsys: pyte
     assert "no layout uses spare" in out
 
 
+def test_designs_with_the_same_status_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    study = tmp_path / "undamped.toml"
+    study.write_text(SMALL.replace('"k | c | b"', '"k | b"').replace('"k | c - b"', '"b | k"'))
+    call(["run", str(study), "-o", str(tmp_path / "out")])
+    (line,) = [line for line in capsys.readouterr().err.splitlines() if "undamped mode" in line]
+    assert line.startswith("inerter: S2 J1; S3 J1: marginal: ")
+
+
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     assert call(["--version"]) == 0
     assert inerter.__version__ in capsys.readouterr().out

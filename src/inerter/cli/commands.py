@@ -21,7 +21,7 @@ from inerter.files.study.plausibility import roads_sentences
 from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
-from inerter.formatting import format_list
+from inerter.formatting import format_list, merge_alike
 from inerter.papers.paper import Paper
 from inerter.papers.registry import PAPERS
 from inerter.report.problem_statement import index_rows
@@ -100,8 +100,9 @@ def reproduce(name: str, only: tuple[str, ...], options: WorkOptions) -> tuple[S
 
 
 def _report_failures(result: StudyResult) -> None:
-    """Report designs whose status is not ok on stderr."""
-    for line in islice(result.iterate_failures(), _MOST):
-        say(line)
+    """Report designs whose status is not ok on stderr, those with the same status in one line."""
+    told = [line.split(": ", 1) for line in islice(result.iterate_failures(), _MOST)]
+    for status, places in merge_alike([status for _, status in told]):
+        say(f"{'; '.join(told[place][0] for place in places)}: {status}")
     if result.n_failures > _MOST:
         say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")

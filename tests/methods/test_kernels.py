@@ -30,8 +30,10 @@ from inerter import (
     evaluate,
     evaluate_many,
     free,
+    optimise,
 )
 from inerter.kernels import cache, gain, h2, harmonic
+from inerter.kernels.decorators import Kernel
 from inerter.methods.objective import Differentiable
 
 INDICES = (RideComfort(ROAD), TyreLoad(ROAD), LoadCarrying())
@@ -288,3 +290,25 @@ def test_kernels_are_called_with_the_types_that_they_are_prepared_for(convention
                     objective.components(point, active)
     for kernel in (h2.norms, gain.peaks_of, gain.gains, harmonic.gains):
         assert len(kernel.ready().signatures) == 1, kernel.title
+
+
+@pytest.mark.parametrize(
+    ("car", "index", "conventions"),
+    [
+        ("quarter S3", RideComfort(ROAD), "exact"),
+        ("quarter S3", LoadCarrying(), "exact"),
+        ("quarter S3", RideComfort(ROAD), "paper2008"),
+        ("half S1", RideComfort(ROAD), "exact"),
+        ("half S3", TyreLoad(ROAD), "exact"),
+        ("half S3", LoadCarrying(), "exact"),
+    ],
+)
+def test_a_search_calls_what_is_prepared_for_it(car, index, conventions, monkeypatch):
+    """What it calls besides would be compiled in each process that meets it, and what it does not call, in vain."""
+    vehicle, method, called = CARS[car], Norm(conventions), set()
+    prepared = method.kernels(index.definition(vehicle.mechanism()), search=vehicle)
+    call = Kernel.__call__
+    monkeypatch.setattr(Kernel, "__call__", lambda self, *given: called.add(self) or call(self, *given))
+    optimise(vehicle, index, method, seed=0, starts=4)
+    assert called <= set(prepared)
+    assert set(prepared) - called <= {gain.gains}  # of peaks that none of these searches meets twice

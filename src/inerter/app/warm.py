@@ -42,13 +42,13 @@ def _kernels() -> Iterator[Any]:
 
 def _of_method(name: str) -> Iterator[Any]:
     parts = {"k": Spring(1e5), "c": Damper(free(1e2, 1e5)), "b": Inerter(1e2), "f": Friction(10.0)}
-    car = QuarterCar(250.0, 35.0, 150e3, strut=network("k | c - (b | f)", **parts)).mechanism()
+    car = QuarterCar(250.0, 35.0, 150e3, strut=network("k | c - (b | f)", **parts))
     kind: Callable[..., Any] = METHODS[name]
     for symbol in INDICES:
         try:
             method = kind()
-            definition = make_index(symbol, Road(roughness=5e-7, speed=25.0), {}).definition(car)
+            definition = make_index(symbol, Road(roughness=5e-7, speed=25.0), {}).definition(car.mechanism())
             if isinstance(method, MethodWithKernels):
-                yield from method.kernels(definition, search=searches(name))
+                yield from method.kernels(definition, search=car if searches(name) else None)
         except (InerterError, TypeError):  # what needs settings is compiled when it is called
             continue

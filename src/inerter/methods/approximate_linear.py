@@ -167,9 +167,10 @@ class ApproximateLinear(FormerMethodNames):
             result[i] = [estimate.value if estimate.status.ok else np.nan for estimate in estimates]
         return result
 
-    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that start a search."""
-        return (*StatisticalLinearisation().kernels(definition, search=True), *KERNELS) if search else KERNELS
+        quick = () if search is None else StatisticalLinearisation().kernels(definition, search=search)
+        return (*quick, *KERNELS)
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:
         """The index as a function of the free values: one estimate a point, on the same realisations everywhere."""

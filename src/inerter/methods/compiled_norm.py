@@ -429,7 +429,7 @@ class CompiledNorm:
         return weight * gains, weight * gradients
 
 
-def kernels_of(definition: IndexDefinition) -> tuple[Any, ...]:
+def kernels_of(definition: IndexDefinition, by_modes: bool = False) -> tuple[Any, ...]:
     """The compiled code that values of the index and their gradients call, whatever the vehicle."""
     if definition.is_peak:
         return gain_kernels.peaks_of, gain_kernels.gains
@@ -438,7 +438,7 @@ def kernels_of(definition: IndexDefinition) -> tuple[Any, ...]:
     found: list[Any] = [h2_kernels.norms]
     if corrected:
         found.append(excess_kernels.corrections)
-    if coherence is not None or any(one is not None for one in definition.filters):
+    if by_modes or coherence is not None or any(one is not None for one in definition.filters):
         found.append(modal_kernels.norms_by_modes)
     return tuple(found)
 

@@ -165,10 +165,10 @@ class ExpectedValue(FormerMethodNames):
         changes = change(seeds)
         return changes[:count], changes[count:]
 
-    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that locate peaks and optima."""
         quick = StatisticalLinearisation().kernels(definition, search=search)
-        return (*quick, *KERNELS) if search or definition.is_peak else KERNELS
+        return (*quick, *KERNELS) if search is not None or definition.is_peak else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:
         mechanism, conventions = vehicle.mechanism(), CONVENTIONS[self.conventions]

@@ -146,8 +146,8 @@ class MethodWithChecks(Protocol):
 class MethodWithKernels(Protocol):
     """A method that calls compiled code."""
 
-    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
-        """Compiled functions called by an estimate, or by a search; the slowest to compile first."""
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
+        """Compiled functions called by an estimate, or by a search over a vehicle; the slowest to compile first."""
         ...
 
 
@@ -291,7 +291,7 @@ def _prepare(pool: Pool | None, vehicle: Vehicle, indices: Sequence[IndexLike], 
     """Compile what an estimate calls where it will be called, before several processes would do so at once."""
     if isinstance(method, MethodWithKernels):
         definitions = [i.definition(v.mechanism()) for index in indices for v, i in constituents_of(vehicle, index)]
-        prepare_on(pool, [k for definition in definitions for k in method.kernels(definition, search=False)])
+        prepare_on(pool, [k for definition in definitions for k in method.kernels(definition, search=None)])
 
 
 def _estimate_rows(

@@ -39,7 +39,7 @@ from inerter.networks.elements.algebra import CombinedNetwork
 from inerter.networks.transform import linearise
 from inerter.systems.network_port import PortFunction, port_functions
 from inerter.systems.structure import Structure, structure_of
-from inerter.vehicle.mechanism import Mechanism
+from inerter.vehicle.mechanism import Mechanism, Strut
 from inerter.vehicle.vehicle import Vehicle
 
 Array = NDArray[np.float64]
@@ -297,21 +297,28 @@ def network_index(mechanism: Mechanism, definition: IndexDefinition, place: str)
     )
 
 
+def _free_struts(mechanism: Mechanism) -> list[Strut]:
+    return [m for m in mechanism.struts if any(isinstance(e.value, Free | Tied) for e in m.network.elements())]
+
+
+def has_one_free_strut(mechanism: Mechanism) -> bool:
+    """Whether all free values are in one strut."""
+    mounts = _free_struts(mechanism)
+    own = {str(e.value.name) for m in mounts for e in m.network.elements() if isinstance(e.value, Free)}
+    return len(mounts) == 1 and own.issuperset(mechanism.free_values())  # some may have no effect
+
+
 def index_over_strut(vehicle: Vehicle, index: Index) -> IndexOverNetwork | None:
     """The index over the linearised network of the strut that has all free values.
 
     None where there is no such strut, and where compiled code cannot give the index.
     """
     mechanism = vehicle.mechanism()
-    mounts = [m for m in mechanism.struts if any(isinstance(e.value, Free | Tied) for e in m.network.elements())]
-    if len(mounts) != 1:
+    if not has_one_free_strut(mechanism):
         return None
-    (mount,) = mounts
+    (mount,) = _free_struts(mechanism)
     network = linearise(mount.network).network
     if network is None or not all(type(element) in (Spring, Damper, Inerter) for element in network.elements()):
-        return None
-    own = {str(e.value.name) for e in mount.network.elements() if isinstance(e.value, Free)}  # some without effect
-    if not own.issuperset(mechanism.free_values()):
         return None
     probe = replace(mount, network=Damper(free(1.0, 2.0, PLACE), PLACE))
     probed = replace(mechanism, struts=tuple(probe if strut is mount else strut for strut in mechanism.struts))

@@ -14,7 +14,7 @@ from inerter.indices.definition import ExcitedIndex, Index, IndexDefinition
 from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem, linear_problem_of_design
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
-from inerter.methods.network_norm import network_kernel, norms_over_strut
+from inerter.methods.network_norm import has_one_free_strut, network_kernel, norms_over_strut
 from inerter.methods.objective import Differentiable, count_of, rows_of
 from inerter.vehicle.vehicle import Vehicle
 
@@ -104,12 +104,13 @@ class Norm(FormerMethodNames):
             )
         return CompiledNorm(problem)
 
-    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
         """The compiled code that a search calls; one design is valued without."""
-        if not search:
+        if search is None:
             return ()
-        own = (network_kernel(definition),) if is_exact_norm(self) else ()
-        return (*own, *kernels_of(definition))
+        if is_exact_norm(self) and has_one_free_strut(search.mechanism()):
+            return (network_kernel(definition), *kernels_of(definition))
+        return kernels_of(definition, by_modes=True)  # of the designs of which covariances are not sure
 
 
 EXACT_NORM = Norm()  # which other code may compute in its place

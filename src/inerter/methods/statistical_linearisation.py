@@ -90,10 +90,10 @@ class StatisticalLinearisation(FormerMethodNames):
         """Raises what `estimate` would raise for the design's elements and the index's outputs, whatever the values."""
         self._closure(vehicle, index)
 
-    def kernels(self, definition: IndexDefinition, *, search: bool) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
         """Compiled functions of the method; a search of a design without friction uses those of `Norm`."""
         if definition.is_peak:
-            return (*(kernels_of(definition) if search else ()), harmonic.gains)
+            return (*(() if search is None else kernels_of(definition)), harmonic.gains)
         return kernels_of(definition)
 
     def _many(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array:

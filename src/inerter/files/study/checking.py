@@ -212,5 +212,5 @@ def kernels(study: Study, design: Vehicle | None = None) -> list[Any]:
         if isinstance(method, MethodWithKernels):
             definitions = [study.index(index).definition(design.mechanism()) for index in study.indices]
             for definition in [*definitions, *limited_definitions(study, design)]:
-                found += method.kernels(definition, search=name == study.optimise)
+                found += method.kernels(definition, search=design if name == study.optimise else None)
     return list(dict.fromkeys(found))

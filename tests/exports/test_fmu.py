@@ -113,6 +113,8 @@ ROUGH = {  # struts, with the largest error of an output against the event-drive
     "backlash and friction": (K | C - it.Gap(5e-4) - SHAFT - (B | it.Friction(20.0)), 3e-5),
     "a stop": (it.Spring(3e4) | it.Damper(1.5e3) | BUMPER - it.Gap(5e-3), 5e-6),
     "a stop on one side": (it.Spring(3e4) | it.Damper(1.5e3) | BUMPER - OneSidedStop(5e-3), 5e-6),
+    "a stop of 100 GN/m": (it.Spring(3e4) | it.Damper(1.5e3) | it.Spring(1e11) - it.Gap(5e-3), 1e-4),
+    "a stop of 1 TN/m": (it.Spring(3e4) | it.Damper(1.5e3) | it.Spring(1e12) - it.Gap(5e-3), 2e-2),
     "a valve": (K | valved_damper(1500.0, 5000.0) - SHAFT - B, 5e-6),
 }
 
@@ -121,7 +123,7 @@ ROUGH = {  # struts, with the largest error of an output against the event-drive
     ("kind", "name"),
     sampled(
         [(kind, name) for kind in KINDS for name in ROUGH],
-        [("fmu", "backlash and friction")],
+        [("fmu", "backlash and friction"), ("fmu", "a stop of 100 GN/m")],
         often=[("fmu3", "a stop")],
         kept=2,
     ),

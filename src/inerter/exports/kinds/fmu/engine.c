@@ -6,9 +6,10 @@
 
    NR reactions of friction and gaps are such that their laws hold at the end of a step. From their values at its begin they
    change as ramps, so that what sticks beside a light damper does not creep. A step in which one of them changes its
-   state is halved, down to 2^(1 - LEVELS) of the whole, where reactions are held; the flows of its parts are powers of
-   each other. So is one that is long for a light mass, at which ramps would ring: an error changes its sign with every step
-   and never decays. Reactions at an instant are those of a step of GLANCE from there. A friction that CREEPS is at a node that
+   state is halved, down to HELD_FROM, where reactions are held, or to the last of LEVELS around the strokes of a gap. The
+   flows of its parts are powers of each other. So is one that is long for a light mass, at which ramps would ring: an error
+   changes its sign with every step and never decays; and one over which the reaction of a contact is not straight, as on a
+   stiff stop. Reactions at an instant are those of a step of GLANCE from there. A friction that CREEPS is at a node that
    only springs hold: its force moves the node at once, and its law is about its elongation, which slip alone changes. */
 
 #include <math.h>
@@ -27,13 +28,15 @@
 #define SWEEPS 10000
 #define LONGEST 2e-5 /* s, with reactions */
 #define MOST 1e9 /* such steps in one */
-#define GLANCE (LONGEST / 2048.0)
+#define GLANCE (LONGEST / 65536.0)
 #if NR > 0
-#define LEVELS 9
+#define LEVELS 16
 #else
 #define LEVELS 1
 #endif
+#define HELD_FROM 8 /* level of the shortest steps, but for those at the strokes of a gap */
 #define RINGING 1e-4 /* of the largest share of reactions in an output */
+#define BENT 1e-5 /* of the largest of a reaction so far */
 #define TERMS 20
 #define WORST 1e-9 /* error of a row of the matrices by rounding, of its largest entry */
 #define KEPT 6 /* flows of so many lengths of steps */
@@ -53,6 +56,7 @@ typedef struct {
     double place[NR + 1]; /* elongation of a friction that creeps, which only its slip changes */
     double p[NP + 1];
     double largest[NY + 1]; /* share of the reactions in each output so far */
+    double strongest[NR + 1]; /* of each reaction so far */
     double mean; /* of the force of a strut over the last step */
     int stale; /* whether u and r are not yet those of this instant */
     int given; /* whether an input was ever set that is not a motion */
@@ -193,11 +197,11 @@ static void multiply(const double *a, const double *b, double *c)
         }
 }
 
-static void keep(const Model *model, Flow *flow, const double *whole, double step)
+static void keep(const Model *model, Flow *flow, const double *rise, double step)
 {
     int i, j, k;
     for (i = 0; i < NX; i++)
-        for (j = 0; j < WIDTH; j++) flow->flow[i][j] = whole[i * WIDTH + j];
+        for (j = 0; j < WIDTH; j++) flow->flow[i][j] = rise[i * WIDTH + j] + (i == j);
     for (i = 0; i < NR; i++)
         for (j = 0; j < NR; j++) {
             flow->held[i][j] = flow->ramp[i][j] = model->Q[i][NX + NU + j];
@@ -237,16 +241,17 @@ static int discretise(const Model *model, double step, Flow *flows, int levels)
     while (halvings < levels - 1 || ldexp(norm, -halvings) > 0.5) halvings++;
     for (i = 0; i < WIDTH * WIDTH; i++) m[i] = ldexp(m[i], -halvings);
     for (i = 0; i < WIDTH; i++) sum[i * WIDTH + i] = 1.0;
-    for (k = TERMS; k > 0; k--) { /* I + m/1 (I + m/2 (I + ...)) */
+    for (k = TERMS; k > 0; k--) { /* m/1 (I + m/2 (I + ...)): without the identity, whose digits it would lose */
         multiply(m, sum, other);
         for (i = 0; i < WIDTH * WIDTH; i++) other[i] /= k;
-        for (i = 0; i < WIDTH; i++) other[i * WIDTH + i] += 1.0;
+        for (i = 0; k > 1 && i < WIDTH; i++) other[i * WIDTH + i] += 1.0;
         swap = sum, sum = other, other = swap;
     }
     for (k = halvings; k >= 0; k--) { /* the flow of step / 2^k */
         if (k < levels) keep(model, &flows[k], sum, ldexp(step, -k));
         if (k == 0) break;
         multiply(sum, sum, other);
+        for (i = 0; i < WIDTH * WIDTH; i++) other[i] += 2.0 * sum[i];
         swap = sum, sum = other, other = swap;
     }
     free(m);
@@ -470,20 +475,46 @@ static int rings(Model *model)
     return found;
 }
 
+/* Whether the reaction of a contact or of a creeping friction is not straight over a step, as an oscillation between a mass
+   and what it touches is not: a ramp would then have another impulse. If it is, the two halves are the step. */
+static int bends(Model *model, const State *before, const Flows *flows, double step, int level)
+{
+    State halves = *before;
+    double middle[NR + 1];
+    int i, asked = 0, found = 0;
+    for (i = 0; i < NR; i++) asked |= GAP[i] ? contact(model, model->now.r, i) : CREEPS[i];
+    if (!asked) return 0;
+    follow(model, &flows->flows[level + 1], step / 2.0, 0, &halves);
+    memcpy(middle, halves.r, sizeof middle);
+    follow(model, &flows->flows[level + 1], step / 2.0, 0, &halves);
+    for (i = 0; i < NR; i++) {
+        halves.strongest[i] = fmax(halves.strongest[i], fabs(halves.r[i]));
+        found |= (GAP[i] || CREEPS[i]) && fabs(before->r[i] - 2.0 * middle[i] + halves.r[i]) > BENT * halves.strongest[i];
+    }
+    memcpy(halves.largest, model->now.largest, sizeof halves.largest);
+    model->now = halves;
+    return found;
+}
+
 static void advance_part(Model *model, const Flows *flows, double step, int level)
 {
     const State before = model->now;
-    int i, refined = 0;
-    follow(model, &flows->flows[level], step, level == LEVELS - 1, &model->now);
-    if (level == LEVELS - 1) {
-        look(model);
-        return;
+    int i, touches = 0, struck = 0, slipped = 0;
+    follow(model, &flows->flows[level], step, 0, &model->now);
+    for (i = 0; i < NR; i++) {
+        const int now = contact(model, model->now.r, i);
+        *(GAP[i] ? &struck : &slipped) |= contact(model, before.r, i) != now;
+        touches |= GAP[i] && now != 0;
     }
-    for (i = 0; i < NR; i++) refined |= contact(model, before.r, i) != contact(model, model->now.r, i);
-    if (refined || rings(model)) {
+    if (level < HELD_FROM ? struck || slipped || rings(model) || bends(model, &before, flows, step, level)
+                          : level < LEVELS - 1 && (struck || (touches && rings(model)))) {
         model->now = before;
         advance_part(model, flows, step / 2.0, level + 1);
         advance_part(model, flows, step / 2.0, level + 1);
+    } else if (struck || slipped || rings(model)) {
+        model->now = before;
+        follow(model, &flows->flows[level], step, 1, &model->now);
+        look(model);
     }
 }
 

@@ -95,6 +95,18 @@ def test_an_unstated_bandwidth_of_the_load_cell_is_named_first() -> None:
         assert first.estimates[name][0] == pytest.approx(truth, rel=0.01)
 
 
+@pytest.mark.campaign
+def test_a_wrongly_stated_bandwidth_of_the_load_cell_is_named_first() -> None:
+    """A clock that drifts, with a delay at first, explained more of it than another filter of the samples."""
+    given = rigid_record().with_notes(force_bandwidth=600.0)
+    (first, *_), _ = explained(quick_fit(given, MODELS["friction"], {"b": 33.0, "f": 26.0}))
+    assert first.name is Suspect.FILTERED_FORCE
+    assert "stated as 600 Hz" in first.sentence
+    assert first.values["load cell bandwidth"] == pytest.approx(150.0, rel=0.1)
+    for name, truth in (("b", 33.0), ("f", 26.0)):
+        assert first.estimates[name][0] == pytest.approx(truth, rel=0.01)
+
+
 @pytest.mark.marathon
 @pytest.mark.timeout(1800)
 @pytest.mark.parametrize(("name", "seed"), sampled([(n, s) for n in CAUSES for s in range(2)], kept=0))

@@ -230,7 +230,9 @@ def _likelihood(e: Explanation) -> tuple[int, int, float]:
 
 def hypotheses(problem: FitProblem, places: Sequence[Localisation] = ()) -> list[Hypothesis]:
     """All hypotheses that are not assumed already and that these records could show."""
-    found = [*sensor_hypotheses(problem.offset), *recording_faults(problem, places), *laws(problem)]
+    stated = {bandwidth for e in problem.experiments if (bandwidth := e.record.force_bandwidth) is not None}
+    cells = [load_cell(bandwidth) for bandwidth in sorted(stated)]
+    found = [*sensor_hypotheses(problem.offset), *cells, *recording_faults(problem, places), *laws(problem)]
     taken = {h.name for h in problem.assumed}
     return [h for h in found if h.name not in taken]
 

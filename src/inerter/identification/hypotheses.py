@@ -122,15 +122,15 @@ def filtered_force() -> Hypothesis:
     return Hypothesis(Suspect.FILTERED_FORCE, (unknown,), read=read, details=lambda values: {"time": values[name]})
 
 
-def load_cell() -> Hypothesis:
-    """Hypothesis of a load cell whose bandwidth the records do not state, as a part of the simulated rig.
+def load_cell(stated: float | None = None) -> Hypothesis:
+    """Hypothesis of a load cell whose bandwidth the records do not state, or not rightly, as a part of the rig.
 
     Friction that reverses between two samples is not resolved by a filter of the samples.
     """
     unknown = Unknown(LOAD_CELL, "Hz", *_BANDWIDTHS, 100.0)
 
     def change_motion(e: Experiment, values: Values) -> Experiment:
-        if e.record.force_bandwidth is not None:
+        if e.record.force_bandwidth != stated:
             return e
         return replace(e, record=replace(e.record, force_bandwidth=values[LOAD_CELL]))
 
@@ -138,7 +138,7 @@ def load_cell() -> Hypothesis:
         Suspect.FILTERED_FORCE,
         (unknown,),
         change_motion=change_motion,
-        details=lambda values: {"time": 0.5 / math.pi / values[LOAD_CELL], "unstated": True},
+        details=lambda values: {"time": 0.5 / math.pi / values[LOAD_CELL], "stated": stated},
         starts=tuple({LOAD_CELL: bandwidth, DELAY: 0.0} for bandwidth in (60.0, 250.0)),  # for a delay stood for it
     )
 

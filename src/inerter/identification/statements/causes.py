@@ -32,8 +32,9 @@ def _dropped_samples_text(d: Details) -> str:
 
 
 def _filtered_force_text(d: Details) -> str:
-    if "unstated" in d:
-        return f"the load cell, whose bandwidth is not stated, filters the force at {_corner_frequency_text(d)}"
+    if "stated" in d:
+        stated = "is not stated" if d["stated"] is None else f"is stated as {format_quantity(d['stated'], 'Hz', 3)}"
+        return f"the load cell, whose bandwidth {stated}, filters the force at {_corner_frequency_text(d)}"
     return f"the force was low-pass filtered at {_corner_frequency_text(d)}"
 
 

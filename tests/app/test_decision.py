@@ -36,6 +36,7 @@ def sentences(answer: dict[str, Any]) -> list[str]:
 
 
 @example(c1=300.0, c=990.0, b=2.0, method=SEEING)  # errors as large as the values
+@example(c1=300.0, c=300.0, b=309.0, method=BLIND)  # a difference that rounds to 0.0 %
 @settings(max_examples=4)
 @given(
     c1=st.floats(300.0, 9e3),
@@ -64,7 +65,7 @@ def test_rows_have_the_numbers_of_the_indices(client: TestClient, c1: float, c: 
     sentence = told["verdict"]["sentence"].removeprefix("Not certain: ")
     low, high = (two.first.value * (1.0 + sign * two.first.error_bound) for sign in (-1.0, 1.0))
     base_low, base_high = (two.second.value * (1.0 + sign * two.second.error_bound) for sign in (-1.0, 1.0))
-    if low <= base_high and base_low <= high:  # the errors do not tell which is better
+    if (low <= base_high and base_low <= high) or abs(two.percent) < 0.05:  # nobody can tell which is better
         assert [row["rank"] for row in told["rows"]] == [1, 1]
         assert sentence.startswith("S3 is as good as S1")
         return

@@ -148,7 +148,7 @@ def test_work_has_a_title_of_its_own_and_no_step_once_it_is_done(client: TestCli
         values = ["20 kg", "30 kg"] if place == "b" else ["10 N", "20 N"]
         body = {"kind": "sweep", "study": study, "sweep": {place: values}, "wait": 30}
         jobs.append(client.post("/api/work", json=body).json())
-    assert [job["title"] for job in jobs] == ["Sweep of b: A car", "Sweep of f: A car"]
+    assert [(job["title"], job["study"]) for job in jobs] == [("Sweep of b", "A car"), ("Sweep of f", "A car")]
     assert jobs[0]["state"] == "done", jobs[0]["sentence"]
     assert jobs[0]["told"] == ""
 

@@ -63,7 +63,8 @@ def pools(request):
     changes = [first_order(system, definition, excitation) for system in systems]
 
     def on_road(seed):
-        found = [run(system, excitation, ("sprung_acceleration", "tyre_load"), (), seed).power for system in systems]
+        outputs = ("sprung_acceleration", "tyre_load")
+        found = [run(system, excitation, outputs, (), (seed, None)).power for system in systems]
         return np.sqrt(found), [float(change([seed])[0]) for change in changes]
 
     with ThreadPoolExecutor(2) as pool:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from math import isfinite, isnan, nan
 from typing import Any
 
+from inerter.errors import Status
 from inerter.formatting import (
     Scale,
     format_entry,
@@ -145,13 +146,14 @@ class Table:
     def with_merged_doubts(self) -> Table:
         """Table in which a doubt of several rows, alike but for its numbers, is said once, below them."""
         rows, below = list(self.rows), list(self.failures)
-        doubtful = [i for i, row in enumerate(rows) if row.shown and ": " in row.status]
+        doubtful = [i for i, row in enumerate(rows) if row.shown and Status.parts(row.status)[1]]
         for text, places in merge_alike([rows[i].status for i in doubtful]):
             if len(places) > 1:
                 alike = [doubtful[place] for place in places]
-                below.append(f"{'; '.join(rows[i].cells[0].text for i in alike)}: {text}")
+                labels = dict.fromkeys(" ".join(cell.text for cell in rows[i].cells[: self.labels]) for i in alike)
+                below.append(f"{'; '.join(labels)}: {text}")
                 for i in alike:
-                    rows[i] = replace(rows[i], status=f"{text.partition(': ')[0]}: see below")
+                    rows[i] = replace(rows[i], status=f"{Status.parts(text)[0]}: see below")
         return replace(self, rows=rows, failures=below)
 
     @property

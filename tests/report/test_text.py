@@ -362,3 +362,6 @@ def test_a_doubt_of_several_rows_is_said_once_below_them():
         "    ! inaccurate: see below",
         "    ! S0; S3: inaccurate: off by up to 5.4 to 8 %",
     ]
+    several = [Row(cells("S1", method, 2.0), status=said[0]) for method in ("norm", "simulation")]
+    *_, last = table_lines(Table("Values", columns("Layout", "Method", "J1"), several, labels=2))
+    assert last == f"    ! S1 norm; S1 simulation: {said[0]}"

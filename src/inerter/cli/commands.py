@@ -101,8 +101,8 @@ def reproduce(name: str, only: tuple[str, ...], options: WorkOptions) -> tuple[S
 
 def _report_failures(result: StudyResult) -> None:
     """Report designs whose status is not ok on stderr, those with the same status in one line."""
-    told = [line.split(": ", 1) for line in islice(result.iterate_failures(), _MOST)]
-    for status, places in merge_alike([status for _, status in told]):
-        say(f"{'; '.join(told[place][0] for place in places)}: {status}")
+    failing = list(islice(result.statuses_not_ok(), _MOST))
+    for status, places in merge_alike([status for _, status in failing]):
+        say(f"{'; '.join(failing[place][0] for place in places)}: {status}")
     if result.n_failures > _MOST:
         say(f"and {result.n_failures - _MOST} more like these; {result.folder / SUMMARY} lists all")

@@ -80,14 +80,18 @@ class StudyResult:
 
     def iterate_failures(self) -> Iterator[str]:
         """The lines of `failures`, one by one."""
+        return (f"{name}: {status}" for name, status in self.statuses_not_ok())
+
+    def statuses_not_ok(self) -> Iterator[tuple[str, str]]:
+        """Name and status of every design or answer whose status is not ok."""
         status = self.data.status
         labels = [status[dim].values.tolist() for dim in status.dims]
         for place in np.argwhere(status.values != StatusKind.OK.value):
             names = (str(column[i]) for column, i in zip(labels, place, strict=True))
-            yield f"{' '.join(names)}: {status.values[tuple(place)]}"
+            yield " ".join(names), str(status.values[tuple(place)])
         for answer in self.answers:
             if not answer.ok:
-                yield f"{answer.name}: {answer.status_text}"
+                yield answer.name, answer.status_text
 
 
 @checked(StudyError)

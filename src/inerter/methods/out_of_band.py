@@ -98,9 +98,9 @@ class OnRoads:
         return np.array([abs(output.weight) for output in self.definition.outputs])
 
     def runs(
-        self, first: int, stop: int, pool: Executor, *, spectra: bool = False, after: Sequence[Squares] = ()
+        self, first: int, stop: int, pool: Executor, *, spectra: Sequence[str] = (), after: Sequence[Squares] = ()
     ) -> list[Squares]:
-        """Results of the realisations `first`, ..., `stop` - 1, with the number of spectral lines if `spectra`.
+        """Results of the realisations `first`, ..., `stop` - 1, with numbers of spectral lines of `spectra`.
 
         The motions begin from rest, or where those `after` which they come have ended.
         """
@@ -166,7 +166,7 @@ def long_enough(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Squares]
 
 
 def _first_runs(design: OnRoads, pool: Executor) -> tuple[OnRoads, list[Squares], OutOfBandContribution]:
-    found = design.runs(0, _FIRST, pool, spectra=bool(design.play))
+    found = design.runs(0, _FIRST, pool, spectra=design.play)
     missing = out_of_band_contribution(design, found)
     if design.play and all(ran.status.ok for ran in found):
         higher = design.on_higher_roads().runs(0, _FIRST, pool)
@@ -413,7 +413,7 @@ def _average_index(design: OnRoads, found: Sequence[Squares], missing: OutOfBand
 
 def _errors(missing: OutOfBandContribution, found: Sequence[Squares], outputs: int) -> list[ErrorSource]:
     """Error sources of a value on random roads other than sampling; errors are half those of mean squares."""
-    kept = [ran for ran in found if np.all(np.isfinite(ran.lines))] or found  # whose contacts are known, if any is
+    kept = [ran for ran in found if np.any(np.isfinite(ran.lines))] or found  # whose contacts are known, if any is
     jumps = mean_bound([ran.jumps[:outputs] for ran in kept]) * float(np.sqrt(len(kept) / len(found)))
     return [
         ErrorSource("time step", _STEPPED + jumps),

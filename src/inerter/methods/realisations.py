@@ -145,7 +145,7 @@ def run(
     filters: Sequence[Filter | None],
     on_road: tuple[int, Array | None],
     *,
-    spectra: bool = False,
+    spectra: Sequence[str] = (),
 ) -> Squares:
     """Mean squares of the steady state on the road of a seed, from a state or from rest.
 

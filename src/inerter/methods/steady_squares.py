@@ -12,7 +12,7 @@ from inerter.errors import ErrorSource, Status
 from inerter.simulation.event_driven import Integration
 from inerter.simulation.inputs import InputTable
 from inerter.simulation.observe import contact_jumps, outputs_at_rest, trajectory_of
-from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, settle
+from inerter.simulation.periodic_steady_state import FEW_PERIODS, mean_squares, powers_of, settle
 from inerter.simulation.trajectory import PeriodicState
 from inerter.systems.filters import Filter
 from inerter.systems.piecewise import PiecewiseSystem, output_rows
@@ -51,22 +51,30 @@ def steady_squares(
     state: Array,
     most: int = FEW_PERIODS,
     about_mean: bool = False,
-    spectra: bool = False,
+    spectra: Sequence[str] = (),
     **repeats: float,
 ) -> Squares:
     """Mean squares over the period of `table` once the motion repeats, of deviations from the mean if `about_mean`.
 
-    With `spectra` also the number of spectral lines of each output.
+    With the number of spectral lines of the outputs that `spectra` names.
     Otherwise they are of deviations from static equilibrium, which a constant force such as a preload moves. The first
     outputs pass through `filters`, in the frequency domain: as they do once the filters have settled too.
     """
     at_rest = None if about_mean else outputs_at_rest(system, outputs)
-    if not (about_mean or spectra or any(filters) or at_rest is not None):
-        found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
+    if not (about_mean or any(filters) or at_rest is not None):
+        if spectra:
+            integration, steady = settle(system, table, state, energy=False, most=most, outputs=outputs)
+            found = powers_of(integration)
+        else:
+            found, integration, steady = mean_squares(system, table, outputs, state, most, **repeats)
         if not integration.status.ok:
             return _nan_squares(len(outputs), integration.status, steady)
-        jumps = missed_by_samples(integration, outputs, np.sqrt(found))
-        return Squares(found, integration.warning, steady, jumps, np.full(len(outputs), np.nan), integration.state)
+        jumps, lines = missed_by_samples(integration, outputs, np.sqrt(found)), np.full(len(outputs), np.nan)
+        if spectra:
+            trajectory = trajectory_of(integration, steady, "")
+            spectrum = np.fft.rfft(np.array([trajectory[name][:-1] for name in spectra]))
+            lines[[outputs.index(name) for name in spectra]] = number_of_lines(_squares_of(spectrum))
+        return Squares(found, integration.warning, steady, jumps, lines, integration.state)
     integration, steady = settle(system, table, state, energy=False, most=most)
     trajectory = trajectory_of(integration, steady, "")
     if not integration.status.ok:
@@ -74,11 +82,11 @@ def steady_squares(
     count, period = trajectory.time.size - 1, float(table.time[-1] - table.time[0])
     omega = 2.0 * np.pi / period * np.arange(count // 2 + 1)
     motions = np.array([trajectory[name][:count] for name in outputs])
-    lines = np.abs(np.fft.rfft(motions if at_rest is None else motions - at_rest[:, None])) ** 2
-    passed = np.ones_like(lines)
+    lines = _squares_of(np.fft.rfft(motions if at_rest is None else motions - at_rest[:, None]))
+    passed: Array = np.ones_like(lines)
     for gain, one in zip(passed, filters, strict=False):
         if one is not None:
-            gain[:] = np.abs(one.response(omega)) ** 2
+            gain[:] = _squares_of(one.response(omega))
     if about_mean:
         lines[:, 0] = 0.0
     lines *= passed
@@ -88,6 +96,11 @@ def steady_squares(
     with np.errstate(divide="ignore", invalid="ignore"):
         jumps = missed_by_samples(integration, outputs, power / again)
     return Squares(power, trajectory.status, steady, jumps, number_of_lines(lines), integration.state)
+
+
+def _squares_of(numbers: NDArray[np.complex128]) -> Array:
+    """Squared sizes, without the roots that `abs` takes of them."""
+    return np.asarray(numbers.real**2 + numbers.imag**2)
 
 
 def number_of_lines(squares: Array) -> Array:

@@ -75,13 +75,19 @@ def recorded_period(system: PiecewiseSystem, table: InputTable) -> tuple[Integra
 
 
 def settle(
-    system: PiecewiseSystem, table: InputTable, state: Matrix, energy: bool, most: int = _PERIODS
+    system: PiecewiseSystem,
+    table: InputTable,
+    state: Matrix,
+    energy: bool,
+    most: int = _PERIODS,
+    outputs: Sequence[str] = (),
 ) -> tuple[Integration, PeriodicState]:
     """Repeat one period until the state repeats, at most `most` times; an integration at the end of the last one.
 
-    With the `energy` it is at the start of the next one: the account takes ten times as long, and is of that alone.
+    The squares of `outputs` are added up over that one. With the `energy` it is at the start of the next one: the
+    account takes ten times as long, and is of that alone.
     """
-    found = event_driven.start_finely(system, table, state, keep=not energy)
+    found = event_driven.start_finely(system, table, state, outputs, keep=not energy)
     again = found.table.repeating
     found, settled = _repeat_period(found, again, _REPEATS, most)
     found.table = again
@@ -111,7 +117,12 @@ def mean_squares(
     integration, settled = _repeat_period(begun, begun.table.repeating, repeats, most)
     if integration.status.ok and settled.mismatch > repeats:
         integration.warning = _steady_state_warning(settled)
-    return integration.record.squares / (table.samples - 1), integration, settled
+    return powers_of(integration), integration, settled
+
+
+def powers_of(integration: Integration) -> Matrix:
+    """Mean squares over one period of the outputs whose squares were added up."""
+    return np.asarray(integration.record.squares / (integration.table.samples - 1))
 
 
 def _repeat_period(

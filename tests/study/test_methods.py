@@ -242,6 +242,18 @@ def test_a_method_that_fails_leaves_the_others(study: Study, monkeypatch: pytest
     assert np.isfinite(outcome.values["expected-value"]["J1"])
 
 
+def test_an_index_that_fails_leaves_the_optimum_for_another(study: Study) -> None:
+    """The peak gain of friction needs the amplitude of its force, which J1 does not."""
+    fixed = {name: e.with_value(2e3) if isinstance(e.value, Free) else e for name, e in study.elements.items()}
+    both = replace(study, elements=fixed, optimise=None, evaluate=("expected-value",), indices=("J1", "J5"))
+    comfort, load = (run_case(both, Case("serial", index)) for index in both.indices)
+    assert (comfort.status, comfort.message) == ({"expected-value": "ok"}, "")
+    assert np.isfinite(comfort.values["expected-value"]["J1"])
+    assert np.isnan(comfort.values["expected-value"]["J5"])
+    assert load.status["expected-value"] == "failed"
+    assert "force amplitude" in load.message
+
+
 def test_a_layout_that_friction_alone_holds_is_no_question_for_the_norm(study: Study) -> None:
     held = replace(study, layouts={**study.layouts, "held": replace(study.layouts["usual"], struts={"strut": "f"})})
     with pytest.raises(StudyError, match=r"layouts\.held.*unconstrained"):

@@ -241,7 +241,7 @@ def _best_design(study: Study, case: Case, threads: int) -> _BestDesign:
 def _estimates(study: Study, case: Case, best: _BestDesign, threads: int) -> dict[str, dict[str, Estimate]]:
     """Value of each index of the study for a design, by each method that evaluates it.
 
-    Where there are several methods, one that fails leaves the others their values.
+    A method that fails leaves other methods their values, and an index that fails leaves those of the index of the case.
     """
 
     def estimate(method: str, index: str) -> Estimate:
@@ -251,7 +251,7 @@ def _estimates(study: Study, case: Case, best: _BestDesign, threads: int) -> dic
         try:
             return evaluate(best.vehicle, study.resolve_index(index, case.layout), study.method(method, threads))
         except FAILURES as error:
-            if len(study.evaluate) == 1:
+            if len(study.evaluate) == 1 and index == case.index:
                 raise
             return Estimate(np.nan, "", Status(StatusKind.FAILED, str(error)))
 

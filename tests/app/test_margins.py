@@ -106,6 +106,17 @@ def test_elements_of_a_real_inerter_have_words_as_names() -> None:
     assert gap.sentence == f"Backlash of inerter b: S2 is better than S1 {gap.message[21:]} to each side."
 
 
+def test_an_element_with_the_name_of_its_kind_is_named_once() -> None:
+    elements = {**DOCUMENT["elements"], "gap": "0.1 mm", "f": "30 N"}
+    study = study_from({**DOCUMENT, "elements": elements, "layouts": {"S1": "k | c", "S2": "k | c - (b | f) - gap"}})
+    values = {"S1": {"c": 1500.0}, "S2": {"c": 1500.0, "b": 20.0}}
+    design, baseline = (study.design(name).with_values(values[name]) for name in ("S2", "S1"))
+    found = {
+        one.parameter: one.words for one in _trials(MarginRequest(study, "S2", design, "S1", baseline, "J1", "norm"))
+    }
+    assert (found["gap"], found["f"]) == ("gap", "friction f")
+
+
 def test_backlash_between_two_masses_has_no_break_even_value_which_is_no_failure(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

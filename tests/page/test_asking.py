@@ -110,6 +110,32 @@ def test_every_number_of_an_example_can_be_changed(name: str, visitor: Visitor) 
         assert 1.0 < float(after) / float(number) < 1.05, (place, before, after)
 
 
+def test_a_road_is_named_by_its_class_or_its_word_and_what_is_told_of_it_is_seen(visitor: Visitor) -> None:
+    """It is the last number: what opens below it, and what is wrong with it, would be under the edge of its panel."""
+    page = visitor.page
+    place, entry = "[data-place='road.roughness']", "[id='entry road.roughness']"
+
+    def is_seen(selector: str) -> bool:
+        inside, box = (page.locator(each).bounding_box() for each in (".values > .inside", selector))
+        return bool(inside["y"] <= box["y"] and box["y"] + box["height"] <= inside["y"] + inside["height"] + 1)
+
+    page.set_viewport_size({"width": 1280, "height": 640})
+    page.fill(entry, "Poor")
+    page.keyboard.press("Enter")
+    page.wait_for_function("each => document.querySelector(each).title === '1024e-6 m^3'", arg=entry)
+    page.locator("h1").click()
+    assert page.input_value(entry) == "class D"
+    page.locator(f"{place} summary").click()
+    page.wait_for_timeout(100)
+    assert is_seen(f"{place} .menu-body")
+    page.locator(f"{place} select").select_option(label="A, very good")
+    page.wait_for_function("each => document.querySelector(each).title === '16e-6 m^3'", arg=entry)
+    page.fill(entry, "bumpy")
+    page.keyboard.press("Enter")
+    page.locator(f"{place} .problem").wait_for()
+    assert is_seen(f"{place} .problem")
+
+
 def test_a_lever_of_a_mechanism_is_moved(visitor: Visitor, tmp_path: Path) -> None:
     """What has no unit, or is negative: the study that is downloaded has it, and the page has its numbers."""
     page = visitor.page

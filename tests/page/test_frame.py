@@ -344,7 +344,7 @@ def test_the_optimum_of_a_job_is_not_put_into_another_study(visitor: Visitor) ->
     page.wait_for_selector(".job")
     page.fill("[id='entry elements.k']", "390 kN/m")
     page.keyboard.press("Enter")
-    page.wait_for_selector(".job[data-state=done] >> text=Take it into the editor", timeout=120_000)
+    page.wait_for_selector(".job[data-state=done] >> text=Take", timeout=120_000)
     visitor.settled()
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
     page.locator(".job").first.get_by_role("button", name="Forget").click()  # for other tests on this server

@@ -2,6 +2,7 @@
 
 import { Lost, Refusal, postNow } from "./api.js";
 import { freeIn, isQuick, layoutsWith, methodOf, quickMethod } from "./library.js";
+import { showNewest } from "./parts/controls.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { questions, strutTexts } from "./questions.js";
 import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
@@ -36,6 +37,7 @@ export async function optimise(store, api, asked) {
           void takeBest(job.result.designs).then((told) => store.say(told, "taken"));
       });
       store.look({ tab: "work" });
+      showNewest(".jobs .job");
       return "Under way: see Jobs. The values are taken when it is done, unless the study changes meanwhile.";
     }
     const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);

@@ -199,6 +199,9 @@ test("quantities come apart and together as they are written", () => {
   assert.equal(quantity(0, "N"), "0 N");
   assert.equal(brief("7544.184883044672 N s/m"), "7544.2 N s/m");
   assert.equal(brief("181.75 kg"), "181.75 kg");
+  assert.equal(brief("5e-7 m^3/cycle"), "5 × 10⁻⁷ m³/cycle");
+  assert.equal(brief("1.5e2 kg"), "1.5 × 10² kg");
+  assert.equal(brief("2.345678912e-08 m"), "2.3457 × 10⁻⁸ m");
   assert.equal(brief("3.19238 kN s/m"), "3.1924 kN s/m");
   const about = { units: { "N/m": [{ least: 1e6, most: 1e12, factor: 1e-6, unit: "MN/m" }] } };
   assert.equal(brief("10000000.0 N/m", about, "N/m"), "10 MN/m");
@@ -456,6 +459,7 @@ test("a number without a unit has the unit that stands there, and a name the val
   assert.equal(completed("C", "25 kg"), "C");
   assert.equal(completed("c", "5e-7 m^3/cycle", classes), "256e-6 m^3");
   assert.equal(completed("class A", "16e-6 m^3/rad", classes), "16e-6 m^3");
+  assert.equal(completed("Very poor", "5e-7 m^3/cycle", { ...classes, "very poor": "4096e-6 m^3" }), "4096e-6 m^3");
   assert.equal(completed("I", "5e-7 m^3/cycle", classes), "I");
 });
 

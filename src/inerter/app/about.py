@@ -60,7 +60,12 @@ def about() -> dict[str, Any]:
         ],
         "road": _fields(ROAD_QUANTITIES),
         "named_values": {
-            field.unit: {letter: f"{round(1e6 * one.mean)}e-6 m^3" for letter, one in ROAD_CLASSES.items()}
+            field.unit: {
+                name: f"{round(1e6 * one.mean)}e-6 m^3"
+                for one in ROAD_CLASSES.values()
+                for name in (one.letter, one.words)
+                if name
+            }
             for field in ROAD_QUANTITIES
             if field.key == "roughness"
         },
@@ -116,7 +121,7 @@ def tables(path: Path) -> dict[str, Any]:
 
 
 def _element(kind: type[Element]) -> dict[str, Any]:
-    said = ("key", "symbol", "quantity", "unit", "sentence", "example", "may_vanish", "tried")
+    said = ("key", "symbol", "quantity", "unit", "sentence", "example", "may_vanish", "tried", "unit_note")
     return {
         **{name: getattr(kind, name) for name in said},
         "more": _fields(kind.more),

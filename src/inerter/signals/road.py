@@ -18,11 +18,13 @@ _PER_N0_SQUARED = 100.0  # [m^2], where ISO 8608 states roughness at n0 = 0.1 cy
 class RoadClass:
     """A road class of ISO 8608: geometric mean of Gd(n0), and limits a factor of two to either side.
 
-    The first class has no lower limit, and the last no upper one. Source: ISO 8608:2016, Table C.1.
+    The first class has no lower limit, and the last no upper one. Source: ISO 8608:2016, Table C.1; words of the first
+    five: J. Y. Wong, Theory of Ground Vehicles, "Classification of road roughness proposed by ISO".
     """
 
     letter: str
     mean: float  # Gd(n0) [m^3]
+    words: str = ""
 
     @property
     def lowest(self) -> float:
@@ -50,7 +52,11 @@ class RoadClass:
 
 
 _CLASSES = "ABCDEFGH"
-ROAD_CLASSES = {letter: RoadClass(letter, 16e-6 * 4.0**i) for i, letter in enumerate(_CLASSES)}
+_WORDS = ("very good", "good", "average", "poor", "very poor", "", "", "")
+ROAD_CLASSES = {
+    letter: RoadClass(letter, 16e-6 * 4.0**i, words)
+    for i, (letter, words) in enumerate(zip(_CLASSES, _WORDS, strict=True))
+}
 
 
 def road_class(letter: object) -> RoadClass:

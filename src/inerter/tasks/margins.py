@@ -232,7 +232,7 @@ def _trials(asked: MarginRequest) -> Iterator[_Trial]:
     labels = [label for label, e in own.items() if e.may_vanish or label in compliant or label in budgets]
     for label in labels:
         what = "stiffness" if label in compliant else own[label].key
-        yield _Trial(label, f"{what} {label}", label, asked.design, is_present=True)
+        yield _Trial(label, what if label == what else f"{what} {label}", label, asked.design, is_present=True)
     present = {own[label].key for label in labels}
     inerters = [label for label, element in own.items() if isinstance(element, Inerter)]
     if not inerters:

@@ -4,7 +4,7 @@ import { element as leaf, freshName, joinAt, leaves, moveTo, names, partAt, remo
   from "../network/algebra.js";
 import { drawing, pathOf, shortLabel } from "../network/drawing.js";
 import { isRange, mapValues, own, strutsOf, textOf } from "../state/document.js";
-import { brief, briefIn, printed, strutWords, symbolParts } from "../state/scale.js";
+import { brief, briefIn, strutWords, symbolParts } from "../state/scale.js";
 import { isFreeNetwork, kindOf, layoutsWith, quickMethod, selectedElement, treeOf, unitOf, wrongIn }
   from "../library.js";
 import { answerOf, strutTexts } from "../questions.js";
@@ -377,7 +377,7 @@ function Symbol({ one, state, chosen, entrance, store, valued, drag }) {
       width=${24 + Math.max(valued ? VALUE : 0, 5.2 * shortLabel(one.name).length)} />
     <path class="symbol" d=${symbolPath(kind)} />
     <text x="12" y="1">${free ? shortLabel(one.name) : subscripted(shortLabel(one.name))}</text>
-    ${valued && html`<text class="value" x="12" y="13">${printed(value)}</text>`}
+    ${valued && html`<text class="value" x="12" y="13">${value}</text>`}
   </g>`;
 }
 

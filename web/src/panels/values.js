@@ -2,9 +2,10 @@
 // whether it may vary; and the best values of what may.
 
 import { enter, isBeingRead, wronglyTyped } from "../entering.js";
-import { isSearched, judging, layoutsWith, numbersOf, quickMethod, selectedElement, wrongIn } from "../library.js";
+import { isSearched, judging, kindOf, layoutsWith, numbersOf, quickMethod, selectedElement, wrongIn }
+  from "../library.js";
 import { Moving } from "../parts/clock.js";
-import { Name, formHandler, textHandler } from "../parts/controls.js";
+import { Name, Select, formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
 import { answerOf, bestOf, goalOf, isFitting, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
@@ -194,6 +195,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
   const id = idOf(row);
   const names = own(state.about?.named_values, unit);
   const named = Object.keys(names ?? {}).find((each) => names[each] === text);
+  const note = place[0] === ELEMENTS && place.length === 2 && kindOf(state, place[1])?.unit_note;
   const [size, lower, upper] = [text, range.from, range.to].map((each) => sizeOf(state, each, unit));
   const usable = size !== null && lower !== null && upper !== null && lower * upper > 0
     && Math.abs(upper) > Math.abs(lower);
@@ -243,30 +245,38 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />
     ${row.may_be_free && html`<input type="checkbox" checked=${free} aria-label=${`${label} may vary`}
       onChange=${vary} />`}
-    ${problems.map((problem) => html`<p class="problem" role="alert">${problem.sentence}</p>`)}
+    ${note && html`<p class="quiet">${note}</p>`}
+    ${problems.map(({ sentence }) => html`<p class="problem" role="alert" ref=${wrong && showWhole}>${sentence}</p>`)}
   </div>`;
 }
 
+/** Shows what has come as a whole, of what scrolls as little as that needs. @param {Element | null} element */
+const showWhole = (element) => element?.scrollIntoView({ block: "nearest" });
 
 /** What a number is, and its bounds. @param {{store: Store, amount: Amount}} props */
 function Bounds({ store, amount }) {
-  const { row, label, range, free } = amount;
+  const { row, label, text, range, free, set } = amount;
   const { path: place, sentence, words } = row;
   const [section, element] = place;
   const removable = section === ELEMENTS && layoutsWith(store.get(), element)?.length === 0;
   const id = place.join(".");
-  const { turn } = store.get();
+  const { turn, about } = store.get();
+  const names = own(about?.named_values, row.unit);
   /** @param {string} value @param {"from" | "to"} end */
   const setEnd = (value, end) => {
     const next = { ...range, [end]: value };
     enter(store, { id, unit: row.unit, before: range[end], turn }, value, free ? { type: "placed", place, value: next }
       : { type: "ranged", place: id, ...next });
   };
-  return html`<details class="bounds">
+  return html`<details class="bounds" onToggle=${(/** @type {ToggleEvent} */ { currentTarget: box }) =>
+    /** @type {HTMLDetailsElement} */ (box).open && showWhole(/** @type {Element} */ (box).lastElementChild)}>
     <summary aria-label=${`${label}: bounds`} class=${section === ELEMENTS ? "symbol-name" : ""}
-      title=${sentence || words}><${Name} label=${label} element=${section === ELEMENTS} /></summary>
+      title=${printed(sentence || words)}><${Name} label=${label} element=${section === ELEMENTS} /></summary>
     <div class="menu-body">
-      <p class="quiet">${sentence || words}</p>
+      <p class="quiet">${printed(sentence || words)}</p>
+      ${names && html`<${Select} label="class" selected=${text} choices=${[["", "none"], ...classesOf(names)]}
+        set=${(/** @type {string} */ value) => value && enter(store, { id, unit: row.unit, before: text, turn }, value,
+          set(value))} />`}
       <label>from <${Entry} id=${`from ${place.join(".")}`} label="from" text=${range.from}
         done=${(/** @type {string} */ from) => setEnd(from, "from")} /></label>
       <label>to <${Entry} id=${`to ${place.join(".")}`} label="to" text=${range.to}
@@ -276,6 +286,10 @@ function Bounds({ store, amount }) {
     </div>
   </details>`;
 }
+
+/** Named values to choose from, each with all its names. @param {{[name: string]: string}} names */
+const classesOf = (names) => [...new Set(Object.values(names))].map((text) =>
+  [text, Object.keys(names).filter((name) => names[name] === text).join(", ")]);
 
 const [DRAGGED, PIXEL] = [4, 0.005]; // [px] from where a press is a drag, and by how much a pixel changes a number
 

@@ -121,9 +121,9 @@ function OptimumResult({ store, job: { result } }) {
     ${doubts.length > 0 && html`<div class="doubts problem" role="alert">
       ${doubts.map((doubt) => html`<p key=${doubt}>${doubt}</p>`)}</div>`}
     ${others.map((sentence) => html`<p class="quiet" key=${sentence}>${sentence}</p>`)}
-    ${designs.map((design) => html`<p key=${`${design.layout} ${design.index}`}>
-      ${valuesIn(store.get().about, design.texts)}
-      <${Take} store=${store} design=${design}>Take it into the editor<//></p>`)}`;
+    ${designs.filter(({ texts }) => Object.keys(texts).length > 0).map((design) => html`<p
+      key=${`${design.layout} ${design.index}`}><b>${design.layout}</b>: ${valuesIn(store.get().about, design.texts)}
+      <${Take} store=${store} design=${design}>Take<//></p>`)}`;
 }
 
 /** Leads to what a fit has found. @param {{store: Store}} props */

@@ -23,20 +23,21 @@ export const quantity = (number, unit) => `${shortest(number)} ${unit}`.trim();
  * @param {{[name: string]: string}} [names] */
 export function completed(typed, before, names = {}) {
   const unit = takenApart(before)?.unit ?? "";
-  const named = own(names, typed.replace(/^class\s*/i, "").toUpperCase());
-  return named ?? (takenApart(typed)?.unit === "" ? `${typed} ${unit}`.trim() : typed);
+  const name = typed.replace(/^class\s*/i, "").toLowerCase();
+  const named = Object.keys(names).find((each) => each.toLowerCase() === name);
+  return named ? names[named] : (takenApart(typed)?.unit === "" ? `${typed} ${unit}`.trim() : typed);
 }
 
-/** A quantity of many digits with five of them, any other as it was written; the long one in the unit that suits it,
- * if it is in the SI unit. @param {string} text @param {any} [about] @param {string} [unit] @returns {string} */
+/** A quantity as a person writes it, of many digits with five of them, and then in the unit that suits it if it is in
+ * the SI unit. @param {string} text @param {any} [about] @param {string} [unit] @returns {string} */
 export function brief(text, about = null, unit = "") {
   const apart = takenApart(text);
-  if (apart === null || !/\d[\d.]{6,}/.test(text)) return text;
+  if (apart === null || !/\d[\d.]{6,}/.test(text)) return printed(text);
   return apart.unit === unit ? briefIn(about, text, unit) : inFive(apart);
 }
 
 /** @param {{number: number, unit: string}} quantity */
-const inFive = ({ number, unit }) => `${Number(number.toPrecision(5))} ${unit}`.trim();
+const inFive = ({ number, unit }) => printed(`${Number(number.toPrecision(5))} ${unit}`.trim());
 
 /** The same of a value that was found, in the unit that suits it if it stands in the SI unit.
  * @param {any} about @param {string} text @param {string} unit @returns {string} */
@@ -135,8 +136,9 @@ const SUPERSCRIPTS = "⁻⁰¹²³⁴⁵⁶⁷⁸⁹";
 /** The digits and the minus sign of a number as superscripts. @param {string} text */
 export const superscript = (text) => [...text].map((digit) => SUPERSCRIPTS["-0123456789".indexOf(digit)]).join("");
 
-/** A unit as a person writes it. @param {string} unit */
-export const printed = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => superscript(power))
+/** A unit, or a quantity, as a person writes it. @param {string} text */
+export const printed = (text) => text.replace(/\^(-?\d+)/g, (_, power) => superscript(power))
+  .replace(/(\d)e\+?(-?\d+)/i, (_, digit, power) => `${digit} × ${tenTo(Number(power))}`)
   .replace(/\bum\b/g, "µm");
 
 const SYMBOL = /^([A-Za-z])(?:_(.+)|(\d\w*|[A-Za-z]\d*|[^\W\d_aeiouAEIOU][A-Za-z]\d*))$/;

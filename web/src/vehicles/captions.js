@@ -21,7 +21,7 @@ export function captions(made, moved, names) {
   const narrow = width < NARROW;
   /** @type {Shape[]} */
   const into = [...scaleBar(made, narrow)];
-  const large = `motions drawn ${made.times} times as large`;
+  const large = made.times === 1 ? "motions to scale" : `motions drawn ${made.times} times as large`;
   const road = scene.tracks.length > 0 && scene.column ? "; road length not to scale" : "";
   const above = standing(made, moved, large);
   if (above.length === 0) into.push(text(12, height - 10, `${capital(large)}${road}`, "on earth"));

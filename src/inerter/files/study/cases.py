@@ -241,7 +241,7 @@ def _best_design(study: Study, case: Case, threads: int) -> _BestDesign:
 def _estimates(study: Study, case: Case, best: _BestDesign, threads: int) -> dict[str, dict[str, Estimate]]:
     """Value of each index of the study for a design, by each method that evaluates it.
 
-    A method that fails leaves other methods their values, and an index that fails leaves those of the index of the case.
+    A method that fails leaves other methods their values, and an index those of the index of the case.
     """
 
     def estimate(method: str, index: str) -> Estimate:

@@ -22,6 +22,8 @@ from inerter.files.common.problem import EntryError
 from inerter.files.study.cases import Case, cases, run_case
 from inerter.files.study.results import dataset
 from inerter.files.study.running import StudyResult
+from inerter.formatting import format_percent_size, format_quantity
+from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.method import Estimate
 from inerter.networks.elements.values import NAME
 from inerter.report.conclusions import conclusion_sentences
@@ -119,6 +121,36 @@ def test_with_friction_the_same_method_values_other_speeds_and_one_that_simulate
         value = it.evaluate(there.design("S4"), it.RideComfort(there.road), it.StatisticalLinearisation()).value
         assert results["at_speeds.value"].sel(layout="S4", index="J1").values[2] == pytest.approx(value, rel=1e-12)
         assert any("by linearisation" in sentence for sentence in conclusion_sentences(results, study))
+
+
+def test_values_at_other_speeds_have_the_digits_that_their_errors_bear(tmp_path):
+    """Friction by linearisation: a value is known to some per cent, and as are its improvements."""
+    asked = 'indices = ["J1"]\nbaseline = "S1"\nevaluate = ["statistical-linearisation"]'
+    study, results = found(
+        tmp_path, half_car(4, asked).replace('f = "20 N"', 'f = "60 N"').replace('S3 = "k | c - b | c"', "")
+    )
+    told = json.loads("".join(as_text(StudyResult(tmp_path, study, results, 3))))["designs"]
+    for i, factor in ((0, 0.8), (2, 1.2)):
+        there = at(study, factor)
+        with_friction, without = (
+            it.evaluate(there.design(name), it.RideComfort(there.road), it.StatisticalLinearisation())
+            for name in ("S4", "S1")
+        )
+        assert with_friction.error_bound > 0.01
+        here = results.sel({"layout": "S4", "index": "J1"}).isel({"at_speeds.speed": i})
+        assert float(here["at_speeds.error_bound"]) == pytest.approx(with_friction.error_bound, rel=1e-9)
+        bound = improvement_bound(with_friction.value, without.value, with_friction.error_bound, without.error_bound)
+        assert float(here["at_speeds.improvement_bound"]) == pytest.approx(bound, rel=1e-6)
+        (design,) = [one for one in told if one["layout"] == "S4"]
+        assert design["at_speeds"][i // 2]["error_bound"] == pytest.approx(with_friction.error_bound, rel=1e-9)
+    (sentence,) = [one for one in conclusion_sentences(results, study) if one.count("km/h") >= 3]
+    (value, known), (better, bound) = (
+        [float(results[f"at_speeds.{name}"].sel(layout="S4", index="J1")[0]) for name in names]
+        for names in (("value", "error_bound"), ("improvement", "improvement_bound"))
+    )
+    speed = format_quantity(0.8 * 3.6 * study.road.speed, "km/h")
+    much = f"{format_percent_size(better, bound=bound)} better than S1"
+    assert f"{format_quantity(value, 'm/s^2', bound=known)} at {speed} ({much})" in sentence
 
 
 @pytest.mark.parametrize(

@@ -128,7 +128,7 @@ class Outcome(PartResult):
     over_linear: tuple[float, float] | None = None  # per cent below the best linear design, and the standard error
     error_bounds: dict[str, dict[str, float]] = field(default_factory=dict)  # relative, as `values`
     shared_errors: dict[str, dict[str, dict[str, tuple[float, ...]]]] = field(default_factory=dict)  # those of the road
-    speeds: dict[str, list[float]] = field(default_factory=dict)  # method -> own index at other speeds, see `speeds`
+    speeds: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> as `at_other_speeds` has them
     speed_message: str = ""  # what makes those doubtful
     in_conditions: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> own index in each
 

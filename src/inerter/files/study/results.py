@@ -21,7 +21,7 @@ from inerter.files.study.limits import each_of, is_swept, limit_text
 from inerter.files.study.method_labels import limit_basis, method_labels
 from inerter.files.study.notes import Notes, road_notes
 from inerter.files.study.responses import responses
-from inerter.files.study.speeds import BESIDE, is_at_one_speed
+from inerter.files.study.speeds import AT_SPEEDS, BESIDE, is_at_one_speed
 from inerter.files.study.study import Study
 from inerter.methods.compare import Comparison, compare_estimates
 from inerter.methods.measured_road_errors import ROAD_ERRORS
@@ -81,9 +81,13 @@ class DatasetBuilder:
         if self._uncertain:
             self._enter_scatter(number, outcome)
         self._enter_conditions(number, outcome)
-        for method, values in outcome.speeds.items():
-            arrays["at_speeds.value"][number] = values
-            arrays["at_speeds.message"][number] = self._once(outcome.speed_message)
+        for method, found_at in outcome.speeds.items():
+            for i, at_speed in enumerate(found_at):
+                for name in ("value", "error_bound"):
+                    arrays[f"{AT_SPEEDS}{name}"][number, i] = at_speed[name]
+                if EFFECT in arrays:
+                    arrays[f"{AT_SPEEDS}{EFFECT}"][number, :, i] = self._of_road(at_speed["shared_errors"])
+            arrays[f"{AT_SPEEDS}message"][number] = self._once(outcome.speed_message)
             self._by[method] = None
         for i, found in enumerate(outcome.limits):
             for name, number_told in zip(LIMITED, found, strict=True):
@@ -107,9 +111,11 @@ class DatasetBuilder:
             _enter_improvements(data, study.baseline)
             if study.conditions:
                 _enter_improvements(data, study.baseline, IN_CONDITIONS)
+            if f"{AT_SPEEDS}value" in data:
+                _enter_improvements(data, study.baseline, AT_SPEEDS)
             self._enter_comparisons()
-        if "at_speeds.value" in data:
-            data["at_speeds.value"].attrs["methods"] = " ".join(self._by)
+        if f"{AT_SPEEDS}value" in data:
+            data[f"{AT_SPEEDS}value"].attrs["methods"] = " ".join(self._by)
         if study.sweeps:
             return data
         found = {case: outcome.parameters for case, outcome in self.designs.items() if outcome.values}
@@ -271,7 +277,7 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         "other": len(study.indices),
         "parameter": len(parameters),
         "limit": len(study.limits),
-        "at_speeds.speed": len(BESIDE),
+        _SPEED: len(BESIDE),
         ROAD_ERROR: len(_road_errors(study)),
         CONDITION: len(study.conditions),
     }
@@ -294,7 +300,7 @@ def _variables_of(study: Study) -> dict[str, _Variable]:
     return {
         **values,
         **(LIMITED if study.limits else {}),
-        **(SPEEDS if is_at_one_speed(study) else {}),
+        **(_at_speeds_of(values) if is_at_one_speed(study) else {}),
         **(_conditions_of(values) if study.conditions else {}),
     }
 
@@ -320,7 +326,7 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
         labels["limit.words"] = ("limit", [limit_text(study, *one) for one in stated])
         labels["limit.each"] = ("limit", [each_of(study, limit) for limit in study.limits])
     if study.road is not None and is_at_one_speed(study):
-        labels["at_speeds.speed"] = ("at_speeds.speed", [part * study.road.speed for part in BESIDE], {"units": "m/s"})
+        labels[_SPEED] = (_SPEED, [part * study.road.speed for part in BESIDE], {"units": "m/s"})
     if is_measured(study):
         labels[ROAD_ERROR] = list(_road_errors(study))
     if study.conditions:
@@ -394,14 +400,12 @@ MEASURED: dict[str, _Variable] = {
     EFFECT: (("method", ROAD_ERROR), 0.0, "relative effect of an error of the road on the value"),
     OTHER_EFFECT: (("method", "other", ROAD_ERROR), 0.0, "its effects on other indices of the same design"),
 }
-SPEEDS: dict[str, _Variable] = {
-    "at_speeds.value": (("at_speeds.speed",), np.nan, "index of the same design at other speeds"),
-    "at_speeds.message": ((), "", "what makes those values doubtful"),
-}
 
 _VARIED = (EFFECT, "value", "standard_error", "error_bound", "improvement", "improvement_bound", "improvement_error")
+_AT_SPEEDS = (EFFECT, "value", "error_bound", "improvement", "improvement_bound")
+_SPEED = f"{AT_SPEEDS}speed"
 PERCENT = {"limit_cost", "over_linear", "over_linear_error"} | {
-    f"{of}improvement{end}" for of in ("", IN_CONDITIONS) for end in ("", "_bound", "_error")
+    f"{of}improvement{end}" for of in ("", IN_CONDITIONS, AT_SPEEDS) for end in ("", "_bound", "_error")
 }
 
 
@@ -412,6 +416,16 @@ def _conditions_of(variables: Mapping[str, _Variable]) -> dict[str, _Variable]:
         for name, (more, empty, words) in variables.items()
         if name in _VARIED
     }
+
+
+def _at_speeds_of(variables: Mapping[str, _Variable]) -> dict[str, _Variable]:
+    """Variables of the same design at other speeds, by the one method of them."""
+    each = {
+        f"{AT_SPEEDS}{name}": ((*(dim for dim in more if dim != "method"), _SPEED), empty, f"{words}, at other speeds")
+        for name, (more, empty, words) in variables.items()
+        if name in _AT_SPEEDS
+    }
+    return {**each, f"{AT_SPEEDS}message": ((), "", "what makes those values doubtful")}
 
 
 def _status(outcome: Outcome, kind: str) -> str:

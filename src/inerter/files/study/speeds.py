@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from inerter.files.study.study import Study
 
 SPEED = "road.speed"
+AT_SPEEDS = "at_speeds."  # begins the names of what results have at those speeds
 BESIDE = (0.8, 1.0, 1.2)  # of the speed of the study
 
 
@@ -30,8 +31,12 @@ def is_at_one_speed(study: Study) -> bool:
     return study.road is not None and SPEED not in study.varied_labels and study.quantile is None
 
 
-def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> tuple[dict[str, list[float]], str]:
-    """Values of a design at `BESIDE` times the speed of the study, by method, and a message on doubtful ones.
+def at_other_speeds(
+    study: Study, vehicle: Vehicle, layout: str, index: str
+) -> tuple[dict[str, list[dict[str, Any]]], str]:
+    """Values of a design at `BESIDE` times the speed of the study with their errors, by method.
+
+    There is also a message on doubtful ones.
 
     Both are empty where there is no need.
 
@@ -45,15 +50,14 @@ def at_other_speeds(study: Study, vehicle: Vehicle, layout: str, index: str) -> 
     asked, method = study.resolve_index(index, layout), quick_method(study, vehicle)
     if not (_is_late(vehicle, asked) or (not is_blind(method) and has_friction(vehicle.mechanism()))):
         return {}, ""
-    found = [value_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
-    values, messages = [value for value, _ in found], [message for _, message in found if message]
-    return {method: values}, "; ".join(dict.fromkeys(messages))
-
-
-def value_at_speed(study: Study, vehicle: Vehicle, asked: tuple[str, str, str], factor: float) -> tuple[float, str]:
-    """Value at `factor` times the speed of the study (nan if none), and a message if it is doubtful or missing."""
-    found, message = estimate_at_speed(study, vehicle, asked, factor)
-    return (np.nan if found is None else found.value), message
+    told = [estimate_at_speed(study, vehicle, (layout, index, method), factor) for factor in BESIDE]
+    found = [
+        {"value": np.nan, "error_bound": np.nan, "shared_errors": {}}
+        if one is None
+        else {name: getattr(one, name) for name in ("value", "error_bound", "shared_errors")}
+        for one, _ in told
+    ]
+    return {method: found}, "; ".join(dict.fromkeys(message for _, message in told if message))
 
 
 def estimate_at_speed(

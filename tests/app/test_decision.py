@@ -139,7 +139,7 @@ def test_a_design_that_breaks_a_limit_is_not_the_best(client: TestClient, stiffn
 def test_a_value_at_its_bound_is_told(client: TestClient) -> None:
     values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": "1000 kg"}}
     told = ask(client, "panel/decision", study=DOCUMENT, values=values)
-    at_bound = "b of S3 is at its upper bound, 1000 kg; beyond it the design may be better."
+    at_bound = "b of S3 is at its upper bound (1000 kg); beyond it the design may be better."
     assert (at_bound in sentences(told)) == (told["rows"][0]["layout"] == "S3")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import inf, isfinite, nan
 
 import pytest
@@ -282,6 +283,24 @@ def test_what_gets_worse_is_said_once_for_equally_good_designs() -> None:
     caveats = decide([BASE, *winners], lambda one, other: Improvement(0.0, is_tie=True)).verdict.caveats
     assert [one.sentence for one in caveats if one.kind is CaveatKind.WORSE] == [
         "Dynamic tyre load (J3) gets worse: S2, S3 and S4 are 4.0 % worse than S1.",
-        "Dynamic load carrying (J5) gets worse: S2 is 2.0 % worse than S1.",
-        "Dynamic load carrying (J5) gets worse: S3 is 3.0 % worse than S1.",
+        "Dynamic load carrying (J5) gets worse: S2 is 2.0 % and S3 3.0 % worse than S1.",
+    ]
+
+
+def test_values_at_bounds_are_said_in_one_sentence() -> None:
+    k, b = AtBound("k", "lower", "15 kN/m"), AtBound("b", "upper", "200 kg")
+
+    def told(*at_bounds: tuple[AtBound, ...]) -> list[str]:
+        winners = [
+            replace(design(f"S{i}", 2.5, by=Improvement(10.0)), at_bounds=found) for i, found in enumerate(at_bounds, 2)
+        ]
+        caveats = decide([BASE, *winners], lambda one, other: Improvement(0.0, is_tie=True)).verdict.caveats
+        return [one.sentence for one in caveats if one.kind is CaveatKind.BOUND]
+
+    assert told((), ()) == []
+    assert told((k,), ()) == ["k of S2 is at its lower bound (15 kN/m); beyond it the design may be better."]
+    assert told((k,), (k,)) == ["k of S2 and S3 is at its lower bound (15 kN/m); beyond it the designs may be better."]
+    assert told((k, b), (k,)) == [
+        "k of S2 and S3 is at its lower bound (15 kN/m) and b of S2 at its upper bound (200 kg); beyond these bounds "
+        "the designs may be better."
     ]

@@ -102,18 +102,16 @@ def _worse(contest: Contest) -> Iterator[Caveat]:
     base = contest.baseline
     if base is None:
         return
-    worse = _names_by(
-        (one for one in contest.winners if one is not base),
-        lambda one: [
-            (capital(other.words), by.words)
-            for other in one.others
-            if (by := other.improvement) is not None and not by.is_equal and by.percent < 0.0
-        ],
-    )
-    for (index, size), names in worse.items():
-        be = "is" if len(names) == 1 else "are"
-        text = f"{index} gets worse: {format_list(names)} {be} {size} than {base.name}."
-        yield Caveat(CaveatKind.WORSE, text)
+    worse: dict[str, dict[str, list[str]]] = {}  # names of the designs by index and by how much they are worse
+    for one in contest.winners:
+        for other in one.others if one is not base else ():
+            if (by := other.improvement) is not None and not by.is_equal and by.percent < 0.0:
+                worse.setdefault(capital(other.words), {}).setdefault(by.size, []).append(one.name)
+    for index, sizes in worse.items():
+        clauses = [f"{format_list(names)} {size}" for size, names in sizes.items()]
+        size, names = next(iter(sizes.items()))
+        clauses[0] = f"{format_list(names)} {'is' if len(names) == 1 else 'are'} {size}"
+        yield Caveat(CaveatKind.WORSE, f"{index} gets worse: {format_list(clauses)} worse than {base.name}.")
 
 
 def _worse_in_conditions(contest: Contest) -> Iterator[Caveat]:
@@ -208,10 +206,16 @@ def _neglect_caveats(contest: Contest) -> Iterator[Caveat]:
 
 
 def _bounds(contest: Contest) -> Iterator[Caveat]:
-    for design in contest.winners:
-        for one in design.at_bounds:
-            place = f"{one.name} of {design.name} is at its {one.bound} bound, {one.value}"
-            yield Caveat(CaveatKind.BOUND, f"{place}; beyond it the design may be better.", Severity.INFO)
+    places = _names_by(contest.winners, lambda one: one.at_bounds)
+    clauses = [
+        f"{at.name} of {format_list(names)}{'' if i else ' is'} at its {at.bound} bound ({at.value})"
+        for i, (at, names) in enumerate(places.items())
+    ]
+    if clauses:
+        beyond = "it" if len(clauses) == 1 else "these bounds"
+        who = "design" if len({name for names in places.values() for name in names}) == 1 else "designs"
+        text = f"{format_list(clauses)}; beyond {beyond} the {who} may be better."
+        yield Caveat(CaveatKind.BOUND, text, Severity.INFO)
 
 
 def _unchosen(contest: Contest) -> Iterator[Caveat]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import starmap
 from math import isfinite, nan
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +20,7 @@ from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResul
 from inerter.formatting import capital, format_list, format_quantity, merge_alike
 from inerter.methods.composite_index import IndexLike
 from inerter.methods.method import Method
-from inerter.methods.registry import brief_words_of, with_decisive_method
+from inerter.methods.registry import brief_words_of, decisive_method_clause, with_decisive_method
 from inerter.networks.elements import Tied
 from inerter.optimisation.budget import BreakEven, break_even
 from inerter.statements import Severity
@@ -188,19 +189,30 @@ class Budgets(Task[BudgetAnswer]):
         study, data = results.study, results.data
         budgets = [found for found in results.answers if not found.condition]
         best = {name for index in study.indices for name in best_layouts(data, index)} if budgets else set()
-        for element, layout in dict.fromkeys((found.parameter, found.layout) for found in budgets):
-            own = [found for found in budgets if (found.parameter, found.layout) == (element, layout)]
-            if layout in best:
-                what = capital(f"{study.elements[element].key} {element}")
+        by_element: dict[str, dict[str, list[BudgetAnswer]]] = {}  # those of the best layouts
+        for found in budgets:
+            if found.layout in best:
+                by_element.setdefault(found.parameter, {}).setdefault(found.layout, []).append(found)
+        for element, by_layout in by_element.items():
+            what = f"{study.elements[element].key} {element}"
+            for layout, own in by_layout.items():
                 sound = [found for found in own if not found.doubt]
-                ends = [f"{end} in {index_title(data, o.index)}" for o in sound if (end := _end_of_range(o))]
-                told = [f"{what}: {layout} is better than {study.baseline} {format_list(ends)}."] if ends else []
+                ends = _ends_of_ranges(data, sound)
+                told = (
+                    [f"{capital(what)}: {layout} is better than {study.baseline} {format_list(ends)}."] if ends else []
+                )
                 others = [found for found in sound if not _end_of_range(found)]
                 for message, of in _alike(data, others, lambda found: found.message):
-                    told.append(f"{what}, {layout}, {of}: {message}.")
-                for message, of in _alike(data, own, lambda found: found.doubt):
-                    told.append(f"Not certain for {what[0].lower()}{what[1:]}, {layout}, {of}: {message}.")
-                yield " ".join(told)
+                    told.append(f"{capital(what)}, {layout}, {of}: {message}.")
+                if told:
+                    yield " ".join(told)
+            uncertain = {layout: [found for found in own if found.doubt] for layout, own in by_layout.items()}
+            doubts = [f"for {layout}, {_uncertain_clause(data, own)}" for layout, own in uncertain.items() if own]
+            if doubts:
+                values = f"the break-even values of {what} {'; '.join(doubts)}"
+                kinds = [(one.method, Status(StatusKind(one.status))) for own in uncertain.values() for one in own]
+                decides = next(filter(None, starmap(decisive_method_clause, kinds)), "")
+                yield f"Not certain (their table says why): {values}{decides}."
 
 
 def element_break_even(design: Vehicle, baseline: Vehicle, index: IndexLike, element: str, method: Method) -> BreakEven:
@@ -253,6 +265,18 @@ def range_text(
         other = format_quantity(max(beyond) if at_most else min(beyond), unit)
         return f"from {other} to {end}" if at_most else f"from {end} to {other}"
     return f"up to {end}" if at_most else f"above {end}"
+
+
+def _ends_of_ranges(data: xr.Dataset, found: Sequence[BudgetAnswer]) -> list[str]:
+    """Ranges of those that have one, each with the title of its index."""
+    return [f"{end} in {index_title(data, one.index)}" for one in found if (end := _end_of_range(one))]
+
+
+def _uncertain_clause(data: xr.Dataset, found: Sequence[BudgetAnswer]) -> str:
+    """Clause on uncertain break-even values of one layout: the ranges, and the indices for which there is none."""
+    without = [index_title(data, one.index) for one in found if not _end_of_range(one)]
+    none = [f"none in {format_list(without)}"] if without else []
+    return format_list([*_ends_of_ranges(data, found), *none])
 
 
 def _remark(found: BudgetAnswer) -> str:

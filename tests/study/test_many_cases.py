@@ -300,7 +300,7 @@ def test_progress_tells_how_many_are_not_ok_and_how_long_it_takes(
             lines += capsys.readouterr().err.splitlines()
     assert lines[0] == "designs to find: 1000, 500 of them done before"
     assert re.fullmatch(
-        r"600 of 1000 designs found, 2 not ok, 2 a second, \S+ \w+ to \S+ \w+ left, 3 threads at work, 50 s",
+        r"600 of 1000 designs found, 2 not ok, 2 a second, \S+ \w+ to \S+ \w+ left, 3 threads at work, 50 s so far",
         lines[1],
     )
 

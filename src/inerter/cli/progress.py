@@ -29,10 +29,12 @@ from inerter.files.study.cases import Outcome
 from inerter.files.study.parts import PartResult
 from inerter.files.study.running import Progress as Report
 from inerter.files.study.tasks import tasks
-from inerter.formatting import format_count, format_number
+from inerter.formatting import format_count, format_duration, format_number
 from inerter.kernels.prepare import ProgressCallback
 from inerter.work.cluster import slots
 from inerter.work.progress import Listener, ProgressStep, listening
+
+_SLOW = 2.0  # seconds for one item, from which they are said
 
 
 class ProgressCallbacks(NamedTuple):
@@ -74,7 +76,7 @@ class _Study:
         if self.begun is None or self.done == self.total:  # what comes then is not counted, such as the figures
             return self.compiling or str(step)
         part = self.part()
-        rate = f", {format_number(self.rate(), 3)} a second" if self.done > self.kept + 9 else ""
+        rate = f", {self.rate()}" if self.done > self.kept + 9 else ""
         count = f"{self.done} of {self.total} {self.items} found{_failures_clause(self.n_failures)}{rate}"
         return f"{count}{f'; {part}' if part else ''}{self.pace.words()}{_hands(self.executor)}"
 
@@ -83,10 +85,11 @@ class _Study:
         parts = sorted((step for step, _ in self.pace.parts.values()), key=lambda step: step.share or 0.0)
         return str(parts[-1]) if parts else ""
 
-    def rate(self) -> float:
-        """Items a second since the beginning."""
+    def rate(self) -> str:
+        """Items a second since the beginning, or the time that one takes where it is seconds."""
         assert self.begun is not None
-        return (self.done - self.kept) / max(time.monotonic() - self.begun, 1e-3)
+        each = max(time.monotonic() - self.begun, 1e-3) / (self.done - self.kept)
+        return f"one in {format_duration(each)}" if each >= _SLOW else f"{format_number(1.0 / each, 3)} a second"
 
 
 @contextmanager

@@ -42,7 +42,7 @@ class Pulse:
         now = time.monotonic()
         factor = next((f for end, f in _THEN.items() if now - self.begun < end), _SELDOM)
         if now - self.printed >= _SILENCE * factor:
-            self.say(f"{self.words(step)}, {format_duration(now - self.begun)}")
+            self.say(f"{self.words(step)}, {format_duration(now - self.begun)} so far")
 
     def say(self, text: str) -> None:
         """Print a line."""

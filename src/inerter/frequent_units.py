@@ -10,6 +10,7 @@ FREQUENT: dict[str, tuple[str, float, float]] = {  # by unit: SI unit, SI units 
     },
     **{unit: (unit, 1.0, 1.0) for unit in ("N", "N/m", "N s/m")},
     "": ("", 1.0, 1.0),  # of a dimensionless number
+    "g": ("kg", 0.001, 1000.0),
     "t": ("kg", 1000.0, 0.001),
     "mm": ("m", 0.001, 1000.0),
     "um": ("m", 1e-06, 1000000.0),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache, lru_cache
 from itertools import product
 from math import prod
 from typing import Any
@@ -57,8 +57,6 @@ _FAST = 1.5  # radians, or times, by which the fastest motion goes on in a step 
 _MOST_PARTS, _MOST_ENTRIES = 32, 4_000_000  # of a step, and of the table of inputs with these: 130 MB
 _KEPT = 16  # machines, such as of one design on many roads
 _MET_BY_ROADS = 2  # elements whose combinations of states random roads visit nearly all
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
-_GAUSS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
 
 @dataclass
@@ -450,7 +448,14 @@ def _account(system: PiecewiseSystem, wanted: bool) -> Account:
     through = np.zeros((0, len(system.mechanism.roads)))
     if wanted and system.graph.branches:
         through = np.array([b.roads for b in system.graph.branches])
-    return Account(wanted, through, *_GAUSS)
+    return Account(wanted, through, *_gauss_rule())
+
+
+@cache
+def _gauss_rule() -> tuple[Matrix, Matrix]:
+    """Nodes and weights of a quadrature over [0, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(10)
+    return 0.5 * (nodes + 1.0), 0.5 * weights
 
 
 def _used_knot_numbers(

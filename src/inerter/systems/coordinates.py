@@ -20,13 +20,18 @@ from dataclasses import dataclass, field
 from functools import lru_cache, wraps
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
 from inerter.systems import exact_rank
 from inerter.systems.exact_rank import FractionRows
-from inerter.systems.lever_arms import RANK_TOLERANCE, BranchRows, independent_rows
+from inerter.systems.lever_arms import (
+    RANK_TOLERANCE,
+    BranchRows,
+    distinct_columns,
+    independent_rows,
+    orthonormal_null_space,
+)
 
 Matrix = NDArray[np.float64]
 
@@ -193,17 +198,20 @@ def null_space(rows: Matrix) -> Matrix:
     kept = rows[size > 0.0] / size[size > 0.0, None]
     if rows.shape[1] == 0 or kept.shape[0] == 0:
         return np.eye(rows.shape[1])
-    basis = scipy.linalg.null_space(kept, rcond=RANK_TOLERANCE)
+    basis = orthonormal_null_space(kept, RANK_TOLERANCE)
     if basis.shape[1] == 0:
         return basis
-    pivots = scipy.linalg.qr(basis.T, mode="r", pivoting=True)[1][: basis.shape[1]]
-    return clean(np.linalg.solve(basis[pivots].T, basis.T).T)
+    pivots = distinct_columns(basis.T)
+    return clean(np.asarray(np.linalg.solve(basis[pivots].T, basis.T).T, dtype=np.float64))
 
 
 @_cache_by_content
 def complete(basis: Matrix, candidates: Matrix) -> Matrix:
     """The first of the columns `candidates` that together with `basis` are independent and span all of them."""
-    spanned = scipy.linalg.orth(basis).T if basis.size else np.zeros((0, candidates.shape[0]))
+    spanned = np.zeros((0, candidates.shape[0]))
+    if basis.size:
+        left, singular, _ = np.linalg.svd(basis, full_matrices=False)
+        spanned = left[:, singular > max(basis.shape) * np.finfo(float).eps * singular[0]].T
     return candidates[:, independent_rows(candidates.T, spanned)]
 
 

@@ -15,7 +15,6 @@ from fractions import Fraction
 from functools import lru_cache
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from inerter.systems import exact_rank
@@ -90,12 +89,12 @@ def _basis(span: BranchRows) -> _Basis | None:
     sizes = np.abs(nodes).max(axis=0)
     scaled = nodes / np.where(sizes > 0.0, sizes, 1.0)
     chosen = independent_rows(scaled)
-    columns = scipy.linalg.qr(scaled[chosen], mode="r", pivoting=True)[1][: len(chosen)]
+    columns = distinct_columns(scaled[chosen])
     square = exact_rank.exact(nodes[chosen][:, columns])
     inverse = exact_rank.weights(square, exact_rank.exact(np.eye(len(chosen))))
     found = [row for row in inverse if row is not None]
     reach = exact_rank.exact(RANK_TOLERANCE * np.abs(rows).max(axis=0)[None])[0]
-    return _Basis(exact_rank.exact(rows[chosen]), tuple(columns.tolist()), found, reach)
+    return _Basis(exact_rank.exact(rows[chosen]), tuple(columns), found, reach)
 
 
 def is_lost(shares: Matrix, motions: Matrix, most: float = _LOST) -> bool:
@@ -132,4 +131,25 @@ def independent_rows(rows: Matrix, spanned: Matrix | None = None) -> list[int]:
         if np.linalg.norm(residual) > RANK_TOLERANCE:
             directions = np.vstack([directions, residual / np.linalg.norm(residual)])
             chosen.append(i)
+    return chosen
+
+
+def orthonormal_null_space(rows: Matrix, tolerance: float) -> Matrix:
+    """An orthonormal basis (as columns) of the vectors that every row annihilates, by singular values.
+
+    This and `distinct_columns` are in NumPy, since SciPy's linear algebra loads for twice as long as NumPy, which a
+    command that only checks a file would wait for.
+    """
+    _, singular, right = np.linalg.svd(rows)
+    return np.asarray(right[np.count_nonzero(singular > tolerance * singular.max(initial=0.0)) :].T)
+
+
+def distinct_columns(rows: Matrix) -> list[int]:
+    """Numbers of the columns in which independent rows differ most, one for each row (QR with column pivoting)."""
+    rest, chosen = rows, list[int]()
+    for _ in rows:
+        sizes = np.linalg.norm(rest, axis=0)
+        chosen.append(int(np.argmax(sizes)))
+        direction = rest[:, chosen[-1]] / sizes[chosen[-1]]
+        rest = rest - np.outer(direction, direction @ rest)
     return chosen

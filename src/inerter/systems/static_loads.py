@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import MechanismError
@@ -13,6 +12,7 @@ from inerter.formatting import format_number
 from inerter.networks.elements import Free
 from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.systems.graph import full_graph
+from inerter.systems.lever_arms import orthonormal_null_space
 from inerter.units import STANDARD_GRAVITY
 from inerter.vehicle.mechanism import Mechanism, RoadInput
 from inerter.vehicle.vehicle import Vehicle, check_vehicle
@@ -73,7 +73,7 @@ def _free_ways(mechanism: Mechanism) -> tuple[Matrix, Matrix, Matrix]:
     rows = np.zeros((len(carrying), len(graph.nodes) + len(contacts)))
     for row, b in zip(rows, carrying, strict=True):
         row[:] = [*b.nodes, *b.roads[len(mechanism.roads) :]]
-    ways = scipy.linalg.null_space(rows, rcond=_BALANCED) if carrying else np.eye(rows.shape[1])
+    ways = orthonormal_null_space(rows, _BALANCED) if carrying else np.eye(rows.shape[1])
     weight = np.array([0.0 if c.angle else STANDARD_GRAVITY * c.coefficient for c in mechanism.masses.values()])
     return ways[list(mechanism.masses)], ways[len(graph.nodes) :], weight
 

@@ -113,7 +113,7 @@ def test_a_model_that_explains_nothing_has_no_intervals(found: IdentificationRes
     parameters = {name: replace(p, value=math.nan) for name, p in fit.parameters.items()}
     status = Status(StatusKind.INACCURATE, "the model explains 3 % of the force only")
     poor = replace(found, fit=replace(fit, status=status, identifiable=verdicts, parameters=parameters))
-    assert value_and_interval(poor, "b") == ("withheld", "113 to 113 kg if explained so")
+    assert value_and_interval(poor, "b") == ("withheld", "113 to 113 kg over the possible causes")
     assert "unreliable estimates" in elements_block(poor)
 
 
@@ -140,7 +140,7 @@ def test_a_warned_fit_shows_no_value_as_a_result(found: IdentificationResult, ve
     assert "95 % interval" not in page
     assert "withheld" in text
     assert "withheld" in page
-    assert ("131.5 kg if explained so" in text.replace("132", "131.5")) == (verdict is Verdict.CONDITIONAL)
+    assert ("131.5 kg over the possible causes" in text.replace("132", "131.5")) == (verdict is Verdict.CONDITIONAL)
     assert next(iter(figures(warned, Responses(None)))).section != "profiles"
     assert "[elements]" not in data["elements"]
     assert data["next_experiment"] == []

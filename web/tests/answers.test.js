@@ -5,7 +5,7 @@ import { answerOf, questions, soughtAnswer, soughtOf } from "../src/questions.js
 import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
-import { indexAxis, indexName, indexWords, signed } from "../src/panels/answers.js";
+import { indexAxis, indexName, indexWords, percentChange } from "../src/panels/answers.js";
 import { createStore } from "../src/state/store.js";
 import { keepAsking } from "../src/asking.js";
 import { partsOf } from "./reading.js";
@@ -305,7 +305,7 @@ test("a drag leaves no timers behind: one for each panel that waits until it res
 });
 
 test("a percentage that rounds to nothing has no sign", () => {
-  assert.deepEqual([-3e-5, 0.004, -0.006, -12.345, 7].map((each) => signed(each)),
+  assert.deepEqual([-3e-5, 0.004, -0.006, -12.345, 7].map((each) => percentChange(each)),
     ["0 %", "0 %", "−0.01 %", "−12.3 %", "+7.0 %"]);
 });
 

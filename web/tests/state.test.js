@@ -13,8 +13,8 @@ import {
   aligned,
   brief,
   completed,
-  estimated,
-  placed,
+  withError,
+  toPlaces,
   printed,
   unitFor,
   withUnit,
@@ -346,15 +346,15 @@ test("a value has as many places as its error tells", () => {
     "4 ± 30",
   ];
   assert.deepEqual(
-    written.map(([value, error]) => estimated(value, error).join(" ± ")),
+    written.map(([value, error]) => withError(value, error).join(" ± ")),
     expected,
   );
 });
 
 test("a value has no more places than its error bound leaves", () => {
-  assert.equal(estimated(2.50911, 0.00047, 3).join(" ± "), "2.5091 ± 0.0005");
-  assert.equal(estimated(16.0237, 0.0137, 2).join(" ± "), "16.02 ± 0.01");
-  assert.equal(estimated(1.2e7, 1.3e5, -6).join(" ± "), "1.20 × 10⁷ ± 0.01 × 10⁷");
+  assert.equal(withError(2.50911, 0.00047, 3).join(" ± "), "2.5091 ± 0.0005");
+  assert.equal(withError(16.0237, 0.0137, 2).join(" ± "), "16.02 ± 0.01");
+  assert.equal(withError(1.2e7, 1.3e5, -6).join(" ± "), "1.20 × 10⁷ ± 0.01 × 10⁷");
   const written = [
     [2.50911, 2],
     [503.88, -1],
@@ -366,7 +366,7 @@ test("a value has no more places than its error bound leaves", () => {
     [null, 2],
   ];
   assert.deepEqual(
-    written.map(([value, places]) => placed(value, places)),
+    written.map(([value, places]) => toPlaces(value, places)),
     ["2.51", "500", "6.65 × 10⁻⁵", "−0.29000", "1.0680", "0", "4.5", "–"],
   );
 });

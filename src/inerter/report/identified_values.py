@@ -41,7 +41,7 @@ def value_and_interval(found: IdentificationResult, name: str) -> tuple[str, str
     if what is ResultKind.NOTHING:
         if isnan(low):
             return _WORDS[what], ""
-        return _WORDS[what], f"{format_range(low, high, parameter.unit, 3)} if explained so"
+        return _WORDS[what], f"{format_range(low, high, parameter.unit, 3)} over the possible causes"
     if what is ResultKind.VALUE:
         return format_with_interval(parameter.best, low, high, parameter.unit)
     if isnan(low):

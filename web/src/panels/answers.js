@@ -3,7 +3,7 @@
 import { methodChoice, unchosenIn } from "../library.js";
 import { allDesigns, answerOf, baselineOf, goalOf, isRightStill } from "../questions.js";
 import { indicesIn, nextLayout } from "../state/document.js";
-import { aligned, estimated, placed, scaled, shown, unitFor, withUnit } from "../state/scale.js";
+import { aligned, withError, toPlaces, scaled, shown, unitFor, withUnit } from "../state/scale.js";
 import { DropDown, Select, Table, formHandler } from "../parts/controls.js";
 import { doubtsIn, isOk } from "../parts/doubts.js";
 import { html, useLayoutEffect, useMemo, useRef, useState } from "../parts/html.js";
@@ -154,14 +154,14 @@ export function Against({ row: { is_baseline: isBaseline, improvement_percent: v
   if (unchosen) return html`<span class="quiet wraps">not chosen yet</span>`;
   const none = isBaseline || typeof value !== "number";
   const status = none ? own : difference;
-  const told = error >= LEAST ? estimated(value, error, 1) : null;
+  const told = error >= LEAST ? withError(value, error, 1) : null;
   return html`${isOk(status) ? "" : html`<div class="doubt">${status}</div>`}
-    ${none ? null : told === null ? signed(value) : html`${value > 0 ? "+" : ""}${told[0]} %
+    ${none ? null : told === null ? percentChange(value) : html`${value > 0 ? "+" : ""}${told[0]} %
       <div class="scatter">± ${told[1]} %</div>`}${!none && tie && html`<div class="scatter">as good</div>`}`;
 }
 
 /** A change in per cent, with its sign. @param {number | null | undefined} value */
-export function signed(value) {
+export function percentChange(value) {
   if (typeof value !== "number") return "–";
   const size = Math.abs(value);
   if (size < 0.005) return "0 %";
@@ -212,8 +212,8 @@ export function Measured({ result }) {
 /** @param {{result: {value: any, standard_error?: any, error_bound?: any, decimals?: any}}} props */
 function Amount({ result: { value, standard_error: error, error_bound: bound, decimals } }) {
   if (typeof value === "string") return html`${value.replace("inf", "∞")}`;
-  if (typeof error !== "number" || !(error > (bound ?? 0) * Math.abs(value))) return html`${placed(value, decimals)}`;
-  const [number, scatter] = estimated(value, error, decimals ?? Infinity);
+  if (typeof error !== "number" || !(error > (bound ?? 0) * Math.abs(value))) return html`${toPlaces(value, decimals)}`;
+  const [number, scatter] = withError(value, error, decimals ?? Infinity);
   return html`${number}<div class="scatter">± ${scatter}</div>`;
 }
 

@@ -7,9 +7,9 @@ import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
-import { aligned, placed, printed, scaled, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
+import { aligned, toPlaces, printed, scaled, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
 import { takeOptima } from "../working.js";
-import { indexAxis, indexChoices, indicesOf, signed } from "./answers.js";
+import { indexAxis, indexChoices, indicesOf, percentChange } from "./answers.js";
 import { Files } from "./files.js";
 
 /** @import { State, Store, Job } from "../state/store.js" */
@@ -161,7 +161,7 @@ function lineThrough(entries, first, second) {
 /** The value of an index at a point, in the digits that its error allows. @param {Point} point @param {Index} index */
 function told({ values, decimals }, { index, factor }) {
   const { value, decimals: places } = scaled({ value: values[index], decimals: decimals?.[index] }, factor);
-  return typeof places === "number" ? placed(value, places) : aligned(value, 4);
+  return typeof places === "number" ? toPlaces(value, places) : aligned(value, 4);
 }
 
 /** @param {Front} front @returns {Entry[]} */
@@ -199,7 +199,7 @@ function Card({ about, entry, fronts, indices, baseline, take }) {
         <td class="number" data-value=${point.values[each.index]}>${told(point, each)}
           ${" "}<span class="unit">${printed(each.unit)}</span></td>
         ${other && html`<td class="number">${told(other, each)}</td>`}
-        ${improvements && html`<td class="number">${signed(improvements[each.index])}</td>`}</tr>`)}
+        ${improvements && html`<td class="number">${percentChange(improvements[each.index])}</td>`}</tr>`)}
     <//>
     <p>${valuesIn(about, point.texts)}</p>
     ${reference && html`<p>${reference.sentence}</p>`}

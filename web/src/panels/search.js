@@ -9,10 +9,10 @@ import { freshName, written } from "../network/algebra.js";
 import { Plot } from "../plot.js";
 import { goalOf, strutTexts } from "../questions.js";
 import { entryAt, own, strutsOf, textOf } from "../state/document.js";
-import { aligned, estimated, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
+import { aligned, withError, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
   from "../state/scale.js";
 import { takeNetwork } from "../working.js";
-import { indexAxis, indicesOf, signed } from "./answers.js";
+import { indexAxis, indicesOf, percentChange } from "./answers.js";
 import { Constraints } from "./asked.js";
 import { Files } from "./files.js";
 import { Sketch } from "./sketch.js";
@@ -211,7 +211,7 @@ function Ranking({ state, found: { baseline, complete, networks }, one, take }) 
 
 /** The best value with its standard uncertainty. @param {Row} row */
 const optimised = ({ value, standard_error: error }) =>
-  (typeof value === "number" && error > 0 ? estimated(value, error).join(" ± ") : aligned(value, 5));
+  (typeof value === "number" && error > 0 ? withError(value, error).join(" ± ") : aligned(value, 5));
 
 /** @param {{state: State, row: Row, number?: number, factor: number, stepped: boolean, compared: boolean,
  * take: (row: Row) => void}} props */
@@ -225,8 +225,8 @@ function NetworkRow({ state, row, number, factor, stepped, compared, take }) {
       ${optimised(scaled(row, factor))}
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
-    ${stepped && html`<td class="number">${signed(row.gain_on_previous_percent)}</td>`}
-    ${compared && html`<td class="number">${signed(part)}</td>`}
+    ${stepped && html`<td class="number">${percentChange(row.gain_on_previous_percent)}</td>`}
+    ${compared && html`<td class="number">${percentChange(part)}</td>`}
     <td><button type="button" title="Take it into the editor" onClick=${() => take(row)}>Take</button></td>
   </tr>`;
 }

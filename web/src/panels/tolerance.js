@@ -9,7 +9,7 @@ import { Name, Select, Table, formHandler } from "../parts/controls.js";
 import { html } from "../parts/html.js";
 import { Plot } from "../plot.js";
 import { download } from "../remembering.js";
-import { estimated, shown, times, unitFor, withUnit } from "../state/scale.js";
+import { withError, shown, times, unitFor, withUnit } from "../state/scale.js";
 import { indexAxis, indexChoices, indicesOf } from "./answers.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -75,7 +75,7 @@ function Scattered({ about, value, title }) {
         heads=${[`${withUnit(value.index, unit)}, ${value.method.replaceAll("-", " ")}`, "value"]}>
         ${rows.map(([what, number, error]) => html`<tr key=${what}><th scope="row">${what}</th>
           <td class="number" data-value=${number}>${error > 0
-            ? estimated(number * factor, error * factor).join(" ± ") : shown(times(number, factor))}</td></tr>`)}
+            ? withError(number * factor, error * factor).join(" ± ") : shown(times(number, factor))}</td></tr>`)}
       <//>
       ${value.histogram.counts.some((/** @type {number} */ count) => count > 0) && html`<${Plot} plot=${{
         title: `Distribution of ${value.index}`, curves: [],

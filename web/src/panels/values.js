@@ -30,6 +30,7 @@ const [STEP, LARGE, FINE] = [0.01, 0.1, 0.001]; // by which an arrow key changes
 const ELEMENTS = "elements";
 const FEW = 8; // numbers of one table that stand below each other; more are folded away, and those in tables of tables
 const SHORT = 3; // letters of a name that leave the slider long
+const LONG = 15; // characters of a value that take the room of the check box too
 
 /** @param {{store: Store, api: Api}} props */
 export function ValuesPanel({ store, api }) {
@@ -222,7 +223,9 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
     else return;
     event.preventDefault();
   };
-  const classes = ["amount", wide && "wide", free && "free", (chosen || lit) && "chosen"].filter(Boolean);
+  const told = named ? `class ${named}` : free ? briefIn(state.about, text, unit) : brief(text, state.about, unit);
+  const classes = ["amount", wide && "wide", !row.may_be_free && told.length > LONG && "long", free && "free",
+    (chosen || lit) && "chosen"].filter(Boolean);
   const light = (/** @type {string | null} */ element) => () => store.dispatch({ type: "lit", name: element });
   const found = best === undefined ? null : sizeOf(state, best, unit);
   const mark = found !== null && usable ? positionOf(found, lower, upper) / STEPS : null;
@@ -238,8 +241,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
       onKeyDown=${onKey} onKeyUp=${() => store.dispatch({ type: "rested" })}
       onChange=${() => store.dispatch({ type: "rested" })} />
     <${Entry} id=${`entry ${id}`} label=${`${label}, exactly`} text=${text} wrong=${problems.length > 0}
-      names=${names} told=${named ? `class ${named}` : (free ? briefIn(state.about, text, unit)
-        : brief(text, state.about, unit))}
+      names=${names} told=${told}
       drag=${usable && ((/** @type {PointerEvent} */ event) => dragged(event, size, slide, () =>
         store.dispatch({ type: "rested" })))}
       done=${(/** @type {string} */ value) => enter(store, { id, unit, before: text, turn }, value, set(value))} />

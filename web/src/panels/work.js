@@ -1,13 +1,13 @@
 // Long work: one queue, and for each kind that the library declares its form and what is shown of its result.
 
-import { signed } from "./answers.js";
+import { percentChange } from "./answers.js";
 import { Files } from "./files.js";
 import { FrontForm, FrontResult, frontBody, frontIndices } from "./front.js";
 import { SearchForm, SearchResult, AddFreeNetwork, searchBody } from "./search.js";
 import { SweepResult } from "./sweep.js";
 import { Select, Table, formHandler, showNewest } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
-import { placed, printed, scaled, unitFor, valuesIn } from "../state/scale.js";
+import { toPlaces, printed, scaled, unitFor, valuesIn } from "../state/scale.js";
 import { Clock } from "../parts/clock.js";
 import { Doubts, isOk } from "../parts/doubts.js";
 import { isSearched, searchedLayouts } from "../library.js";
@@ -150,7 +150,7 @@ function RunResult({ store, api, job }) {
       <td>${row.layout}</td><td>${row.index}</td><td>${row.method}</td>
       <td class="number">${!isOk(row.status) && html`<div class="doubt">${String(row.status).split(": ")[0]}</div>`}
         ${writtenIn(row, unitOf(row))}</td>
-      <td class="number">${signed(row.improvement_percent)}</td>
+      <td class="number">${percentChange(row.improvement_percent)}</td>
       <td>${Object.keys(row.parameters ?? {}).length > 0 && html`<${Take} store=${store} design=${row}>Take<//>`}</td>
     </tr>`)}
   <//>
@@ -161,7 +161,7 @@ function RunResult({ store, api, job }) {
 /** @param {any} row @param {import("../state/scale.js").WrittenUnit} unit */
 function writtenIn(row, { unit, factor }) {
   const { value, decimals } = scaled(row, factor);
-  return html`${placed(value, decimals)} <span class="unit">${printed(unit)}</span>`;
+  return html`${toPlaces(value, decimals)} <span class="unit">${printed(unit)}</span>`;
 }
 
 /** The numbers that can be swept, and from where to where at first. @param {State} state

@@ -66,8 +66,8 @@ const CHANGES = {
     const { study } = document;
     // What is free needs a method that chooses it.
     const has = method === undefined || study.study?.optimise !== undefined;
-    const searched = has ? study : placed(study, ["study", "optimise"], method);
-    return { ...document, values, study: placed(searched, place, { from, to }) };
+    const searched = has ? study : withValueAt(study, ["study", "optimise"], method);
+    return { ...document, values, study: withValueAt(searched, place, { from, to }) };
   },
   fixed: (document, { place, name, text }) => {
     const entry = entryAt(document.study, place);
@@ -214,13 +214,13 @@ export const entryAt = (table, place) => place.reduce(own, table);
 
 /** The document with something at a place of its study. @param {Document} document @param {string[]} place
  * @param {unknown} value @returns {Document} */
-const withEntry = (document, place, value) => ({ ...document, study: placed(document.study, place, value) });
+const withEntry = (document, place, value) => ({ ...document, study: withValueAt(document.study, place, value) });
 
 /** A table with something at a place; `undefined` takes the key away. @param {any} table @param {string[]} place
  * @param {unknown} value @returns {any} */
-function placed(table, place, value) {
+function withValueAt(table, place, value) {
   const [key, ...rest] = place;
-  if (rest.length > 0) return { ...table, [key]: placed(own(table, key) ?? {}, rest, value) };
+  if (rest.length > 0) return { ...table, [key]: withValueAt(own(table, key) ?? {}, rest, value) };
   return value === undefined ? without(table, key) : { ...table, [key]: value };
 }
 

@@ -106,7 +106,7 @@ export const valuesIn = (about, texts, at = {}) => Object.entries(texts).map(([n
 /** A number with so many places after the point, or before it where these are negative, as in the columns of a table;
  * with five digits at most, also where there is no number of places. @param {number | null | undefined} number
  * @param {number | null | undefined} places */
-export function placed(number, places) {
+export function toPlaces(number, places) {
   if (typeof number !== "number" || typeof places !== "number" || number === 0) return shown(number);
   return aligned(number, Math.min(5, Math.max(1, places + 1 + Number(number.toExponential(15).split("e")[1]))));
 }
@@ -114,7 +114,7 @@ export function placed(number, places) {
 /** A value and its error with as many places as the error tells, and no more than `most`: one digit of it, or two if
  * the first is 1; both times the same power of ten.
  * @param {number} value @param {number} error @param {number} most @returns {[string, string]} */
-export function estimated(value, error, most = Infinity) {
+export function withError(value, error, most = Infinity) {
   const power = Math.floor(Math.log10(Math.max(Math.abs(value), error)));
   const far = power >= 6 || power < -3;
   const factor = far ? 10 ** -power : 1;

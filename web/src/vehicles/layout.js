@@ -82,7 +82,7 @@ export function layout(scene, size, range, before = 0) {
   const fitting = TIMES.filter((times) => fits(scene, frame, range, times));
   const best = range.any + range.slope === 0 ? USUAL : fitting[fitting.length - 1] ?? TIMES[0];
   const times = before > 0 && before <= best && 2.5 * before >= best ? before : best;
-  return placed(scene, frame, range, times);
+  return positioned(scene, frame, range, times);
 }
 
 /** @typedef {{width: number, height: number, metre: number, base: number, radius: number,
@@ -138,13 +138,13 @@ function fits(scene, frame, range, times) {
   const lift = times * frame.metre;
   const most = (scene.silhouette ? 0.12 : 0.15) * frame.height;
   if (range.any * lift > most || range.down * lift > DIP * frame.height || range.slope * times > STEEPEST) return false;
-  const { struts } = placed(scene, frame, range, times);
+  const { struts } = positioned(scene, frame, range, times);
   return struts.every(({ strut, top, bottom, scale }) => (range.travel[strut.name] ?? 0) * lift < 0.26 * (top - bottom)
     && (!scene.column || scale >= SMALL || times <= 3));
 }
 
 /** @param {Scene} scene @param {Frame} frame @param {Range} range @param {number} times @returns {Layout} */
-function placed(scene, frame, range, times) {
+function positioned(scene, frame, range, times) {
   const lift = times * frame.metre;
   const levels = levelsOf(scene, frame, range, lift);
   /** @type {Layout} */

@@ -109,4 +109,7 @@ def test_no_example_shows_what_belongs_to_the_one_before(visitor: Visitor) -> No
     """All pairs: at rest each looks as it did the first time, and no number, verdict or curve came before that."""
     examples = vehicles()
     assert len(examples) > 15
+    visitor.page.set_viewport_size(
+        {"width": 1280, "height": 1300}
+    )  # a drawing has its values whatever room messages take
     _walk(visitor, examples)

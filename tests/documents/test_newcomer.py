@@ -41,7 +41,7 @@ def test_files_of_the_path_are_sound(
 def test_the_answer_is_what_the_last_run_prints() -> None:
     said = re.search(r"rides ([\d.]+) % better", text_of(PAGE))
     assert said is not None
-    assert printed(PAGE, ANSWER).partition("by each method")[2].partition("Limits")[0].split()[-2] == f"+{said[1]}"
+    assert printed(PAGE, ANSWER).partition("by each method")[2].partition("Limit of")[0].split()[-2] == f"+{said[1]}"
 
 
 @pytest.mark.campaign

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import groupby
 
 import numpy as np
@@ -25,31 +26,68 @@ _MOST_RANGES = 3  # of swept values, in a remark
 
 
 def limit_tables(results: xr.Dataset) -> list[Table]:
-    """Tables of the limited quantities of each layout's best design, one per index; empty without limits.
+    """Table of the limited quantities of each layout's best designs; empty without limits.
 
-    Over a sweep, the values at which each constraint is active, and those without a feasible design.
+    Over a sweep there is one per index, of the values at which each constraint is active, and those without a feasible
+    design.
     """
-    return [_table(one_method(results), index) for index in indices(results)] if "limit" in results.dims else []
+    if "limit" not in results.dims:
+        return []
+    results = one_method(results)
+    return [_swept_table(results, index) for index in indices(results)] if swept_places(results) else [_table(results)]
 
 
-def _table(results: xr.Dataset, index: str) -> Table:
-    limits, swept = results["limit"].values.tolist(), bool(swept_places(results))
+def _table(results: xr.Dataset) -> Table:
+    limits, names = results["limit"].values.tolist(), indices(results)
+    shown = [len(names) > 1, len(limits) > 1]  # what the rows name, beside the layout
+    rows = [
+        Row(
+            cells(
+                layout,
+                *([index] if shown[0] else []),
+                *([_words(results, limit)] if shown[1] else []),
+                *_describe_limit(_entry(results, layout, index, limit), index),
+            )
+        )
+        for index in names
+        for layout in layouts(results)
+        for limit in limits
+    ]
+    heads = [
+        Column("Layout"),
+        *([Column("Best for", words=True)] if shown[0] else []),
+        *([Column("Limit", words=True)] if shown[1] else []),
+        *(Column("Value"), Column("Effect of the limit", prose=True)),
+    ]
+    return Table(f"{_caption(results, names)}{_basis(results)}", heads, rows, labels=1 + sum(shown))
+
+
+def _swept_table(results: xr.Dataset, index: str) -> Table:
     rows = []
     for name in layouts(results):
-        for limit in limits:
+        for limit in results["limit"].values.tolist():
             entry = _entry(results, name, index, limit)
-            contents = _describe_swept_limit(entry) if swept else _describe_limit(entry, index)
-            rows.append(Row(cells(name, str(results["limit.words"].sel(limit=limit).item()), *contents)))
-        if swept:
-            rows.append(Row(cells(name, "all limits", *_describe_infeasible(_entry(results, name, index)))))
-    caption = f"Limits of the designs that are best for {index_words(results, index)}"
-    if basis := results["limit_value"].attrs["basis"]:
-        caption = f"{caption}; values {basis}"
-    labels = [Column("Layout"), Column("Limit", words=True)]
-    if swept:
-        heads = [*labels, Column("Active", words=True), Column("Where", prose=True)]
-        return Table(f"{caption}, over {' and '.join(swept_words(results))}", heads, rows)
-    return Table(caption, [*labels, Column("Value"), Column("Effect of the limit", prose=True)], rows)
+            rows.append(Row(cells(name, _words(results, limit), *_describe_swept_limit(entry))))
+        rows.append(Row(cells(name, "all limits", *_describe_infeasible(_entry(results, name, index)))))
+    heads = [Column("Layout"), *(Column(name, words=True) for name in ("Limit", "Active")), Column("Where", prose=True)]
+    caption = f"Limits of the designs that are best for {index_words(results, index)}{_basis(results)}"
+    return Table(f"{caption}, over {' and '.join(swept_words(results))}", heads, rows)
+
+
+def _caption(results: xr.Dataset, names: Sequence[str]) -> str:
+    """Caption of the table without a sweep, which names what its rows do not: one index, one limit."""
+    limits = results["limit"].values.tolist()
+    of = f"designs that are best for {index_words(results, names[0])}" if len(names) == 1 else "best designs"
+    return f"Limits of the {of}" if len(limits) > 1 else f"Limit of the {of}: {_words(results, limits[0])}"
+
+
+def _basis(results: xr.Dataset) -> str:
+    basis = results["limit_value"].attrs["basis"]
+    return f"; values {basis}" if basis else ""
+
+
+def _words(results: xr.Dataset, limit: str) -> str:
+    return str(results["limit.words"].sel(limit=limit).item())
 
 
 def _entry(results: xr.Dataset, layout: str, index: str, limit: str | None = None) -> xr.Dataset:

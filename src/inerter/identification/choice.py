@@ -23,6 +23,7 @@ from inerter.identification.noise import Whitening, noise_whitening
 from inerter.identification.options import DEFAULTS, FitOptions, OptionChanges, options_of
 from inerter.identification.solving import SolvedFit
 from inerter.identification.statements.findings import FitFinding
+from inerter.identification.wrong_units import WrongUnitError
 from inerter.kernels.prepare import prepare_on
 from inerter.networks.elements import Element, Free, Network
 from inerter.networks.transform import map_elements, with_values
@@ -158,6 +159,8 @@ class _Selection:
             try:
                 with within(f"model {name}, {done + 1} of {self.expected}"):
                     self._add_solution(name, solution_of(self.records, model, self.asked, self._part_progress(done)))
+            except WrongUnitError:
+                raise
             except InerterError as error:
                 self.failed.append(Finding(FitFinding.FAILED, Severity.WARNING, name, {"error": error.args}))
         if not self.fits:

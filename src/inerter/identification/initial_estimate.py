@@ -93,6 +93,14 @@ def guess_of(chain: Chain, experiments: list[Experiment]) -> dict[str, tuple[flo
     return best
 
 
+def apparent_inertance(chain: Chain, experiment: Experiment) -> float:
+    """Inertance [kg] of the regression, with the fixture mass, of a force of either sign."""
+    bare = replace(experiment.record, fixture_mass=None)
+    signed = (replace(experiment, record=replace(bare, force=sign * bare.force)) for sign in (1.0, -1.0))
+    values = min((_regress(chain, e) for e in signed), key=lambda found: found[0])[1]
+    return next(value for element, value, _ in values if element is chain.inerter)
+
+
 def sign_of(chain: Chain | None, experiment: Experiment) -> tuple[Experiment, list[Finding]]:
     """The experiment with force positive in tension, and findings if it was reversed.
 

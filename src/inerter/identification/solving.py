@@ -28,9 +28,12 @@ from inerter.identification.residual_tests import NoiseReference, check_parts, n
 from inerter.identification.scales import ScaleEffects, scale_effects
 from inerter.identification.search import QUICK, THOROUGH, basin_hopping, robust_sum, search
 from inerter.identification.sensors import noise_residuals, unavoidable_residual
+from inerter.identification.statements.causes import Suspect
 from inerter.identification.sticking import Adhesion, profiles_at_rest, with_adhesion
 from inerter.identification.unstated_bandwidth import with_filter
+from inerter.identification.wrong_units import likely_units, wrong_unit_error
 from inerter.networks.elements.roles import LinearRole
+from inerter.networks.transform import with_values
 from inerter.records.finding import Finding
 from inerter.records.record import Record
 from inerter.vehicle.rig import Rig
@@ -43,6 +46,7 @@ _ROUNDS = 3
 _PARTS = ((0.0, 0.6), (0.6, 0.8), (0.8, 1.0))  # of a search that is repeated at most twice, mostly not at all
 _FINE, _POOR = 2.0, 20.0  # whitened residual (90th percentile) that requires no further search, and always does
 _FAIR = 1.5  # between them: limit over that of sensor noise
+_UNITS = 3  # wrong units that are named
 _SAME = 1e-3  # relative difference of the costs of two searches with the same result
 
 
@@ -76,26 +80,9 @@ def solve(
     """
     chain = chain_of(rig.device)
     _check_law(asked, chain)
-    whole, findings = [], []
-    for number, record in enumerate(records):
-        report("smoothing of records", number, len(records))
-        turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead, is_rigid(rig.device)))
-        whole.append(turned)
-        findings += found_of_sign
-    if chain is not None and asked.quadratic_damping:
-        fastest = max(float(np.abs(e.motion.velocity).max()) for e in whole)
-        peak = max(float(np.abs(e.record.force).max()) for e in whole)
-        assumed = (*assumed, quadratic_damping(chain, fastest, peak))
-    problem = FitProblem(
-        rig, space_of(rig, assumed), _without_validation_part(whole, asked.check), [], asked.offset, assumed
-    )
-    problem.whitenings = [
-        uniform_whitening(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in problem.experiments
-    ]
+    problem, whole, findings = _problem_of(records, rig, chain, assumed, asked)
     _check_reach(problem)
-    report("first guess", 0, 1)
-    guess = {} if chain is None else guess_of(chain, list(problem.experiments))
-    point, costs = _search_thoroughly(problem, guess, asked.seed, asked.starts, part(progress, 0.0, 0.6))
+    point, costs = _search_thoroughly(problem, chain, records, asked, part(progress, 0.0, 0.6))
     report("start of records", 0, len(records))
     problem.experiments, leads = _without_transients(problem, point, asked.lead)
     optimum, adhesion = with_adhesion(problem, _refine(problem, point, asked.seed))
@@ -120,6 +107,26 @@ def solve(
         scales=scale_effects(problem, optimum, asked),
         noisy=decided_by_noise(problem, optimum, found, asked.seed),
     )  # fmt: skip
+
+
+def _problem_of(
+    records: Sequence[Record], rig: Rig, chain: Chain | None, assumed: tuple[Hypothesis, ...], asked: FitOptions
+) -> tuple[FitProblem, list[Experiment], list[Finding]]:
+    """The problem of the first search, the experiments with their validation parts, and findings of reversed forces."""
+    whole, findings = [], []
+    for number, record in enumerate(records):
+        report("smoothing of records", number, len(records))
+        turned, found_of_sign = sign_of(chain, experiment_of(record, asked.bandwidth, asked.lead, is_rigid(rig.device)))
+        whole.append(turned)
+        findings += found_of_sign
+    if chain is not None and asked.quadratic_damping:
+        fastest = max(float(np.abs(e.motion.velocity).max()) for e in whole)
+        peak = max(float(np.abs(e.record.force).max()) for e in whole)
+        assumed = (*assumed, quadratic_damping(chain, fastest, peak))
+    fitted = _without_validation_part(whole, asked.check)
+    whitenings = [uniform_whitening(e.kept, max(e.noise, _ROUGH * float(np.std(e.record.force)))) for e in fitted]
+    problem = FitProblem(rig, space_of(rig, assumed), fitted, whitenings, asked.offset, assumed)
+    return problem, whole, findings
 
 
 def _check_law(asked: FitOptions, chain: Chain | None) -> None:
@@ -178,29 +185,62 @@ def _without_validation_part(experiments: Sequence[Experiment], check: float) ->
 
 def _search_thoroughly(
     problem: FitProblem,
-    guess: Mapping[str, tuple[float, float]],
-    seed: int,
-    starts: int,
+    chain: Chain | None,
+    records: Sequence[Record],
+    asked: FitOptions,
     progress: Callable[[float], None] | None,
 ) -> tuple[Matrix, list[float]]:
     """The best of a search, repeated more thoroughly while the residual exceeds sensor noise.
 
     If two searches agree there is no third: the residual is that of the model.
+
+    Raises `WrongUnitError` if no values explain the records as they were read, but some explain them in other units.
     """
-    kept = np.concatenate([e.kept for e in problem.experiments])
+    report("first guess", 0, 1)
+    guess = _guess(chain, problem)
     found: list[tuple[float, Matrix, list[float]]] = []
-    for attempt, (stages, points) in enumerate(((QUICK, starts), (THOROUGH, starts), (THOROUGH, 2 * starts))):
-        point, costs = search(problem, guess, seed + attempt, points, stages, part(progress, *_PARTS[attempt]))
+    for attempt, (stages, points) in enumerate(((QUICK, 1), (THOROUGH, 1), (THOROUGH, 2))):
+        within = part(progress, *_PARTS[attempt])
+        point, costs = search(problem, guess, asked.seed + attempt, points * asked.starts, stages, within)
         if stages is THOROUGH:
-            point = basin_hopping(problem, point, seed)
-        residual = problem.residual(point)
-        cost, left = robust_sum(residual), float(np.quantile(np.abs(residual[kept]), 0.9))
+            point = basin_hopping(problem, point, asked.seed)
+        cost, fine = _assess(problem, point, asked.seed)
         again = any(math.isclose(cost, earlier, rel_tol=_SAME) for earlier, _, _ in found)
         found.append((cost, point, costs))
-        if again or left < _FINE or left < min(_FAIR * unavoidable_residual(problem, point, seed), _POOR):
+        if again or fine:
             break
+        if stages is QUICK:
+            _check_units(problem, chain, records, asked)
     _, point, costs = min(found, key=lambda f: f[0])
     return point, costs
+
+
+def _guess(chain: Chain | None, problem: FitProblem) -> Mapping[str, tuple[float, float]]:
+    return {} if chain is None else guess_of(chain, list(problem.experiments))
+
+
+def _assess(problem: FitProblem, point: Matrix, seed: int) -> tuple[float, bool]:
+    """The cost of a best fit, and whether its residual is that of sensor noise."""
+    residual = problem.residual(point)
+    left = float(np.quantile(np.abs(residual[np.concatenate([e.kept for e in problem.experiments])]), 0.9))
+    fine = left < _FINE or left < min(_FAIR * unavoidable_residual(problem, point, seed), _POOR)
+    return robust_sum(residual), fine
+
+
+def _check_units(problem: FitProblem, chain: Chain | None, records: Sequence[Record], asked: FitOptions) -> None:
+    """Raise `WrongUnitError` where searches with other usual units explain the records."""
+    assumed = tuple(h for h in problem.assumed if h.name is not Suspect.QUADRATIC)
+    found, wrong = [], []
+    for unit, read in likely_units(chain, records, problem.experiments):
+        other, _, _ = _problem_of(read, problem.rig, chain, assumed, asked)
+        point, _ = search(other, _guess(chain, other), asked.seed, asked.starts, QUICK)
+        if _assess(other, point, asked.seed)[1]:
+            found.append((unit, with_values(other.rig.device, other.space.values_by_name(point))))
+            wrong = [old.source for old, new in zip(records, read, strict=True) if new is not old]
+        if len(found) == _UNITS:
+            break
+    if found:
+        raise wrong_unit_error(wrong, found)
 
 
 def _without_transients(problem: FitProblem, point: Matrix, lead: float | None) -> tuple[list[Experiment], list[float]]:

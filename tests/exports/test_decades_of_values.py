@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 from campaigns import sampled
 from random_mechanisms import FAMILIES
 
@@ -75,6 +77,23 @@ def test_frequency_responses_have_their_digits(decades: int, seed: int) -> None:
     expected = of_mechanism(mechanism, at(omega), list(system.outputs), list(system.inputs))
     found = [acb_mat(*M.shape, [acb(z.real, z.imag) for z in M.ravel()]) for M in it.frequency_response(system, omega)]
     assert deviation(found, expected) <= 2e-9
+
+
+@pytest.mark.parametrize(("decades", "seed"), [(0, 16), (4, 10), (4, 11), (8, 16)])  # without massless nodes
+def test_files_for_matlab_lose_no_small_response_at_low_frequencies(decades: int, seed: int, tmp_path: Path) -> None:
+    """As solved in doubles, at a thousandth of the first resonance, over the response itself."""
+    mechanism = design(decades, seed)
+    it.export(mechanism, "matlab", tmp_path / "car.mat")
+    data = scipy.io.loadmat(tmp_path / "car.mat")
+    A, B, C, D, E = (data[name] if name in data else np.eye(len(data["A"])) for name in "ABCDE")
+    omega = 1e-3 * resonant_range([it.state_space(mechanism).A])[:1]
+    roads = {f"{road.name}_velocity": road.name for road in mechanism.roads}
+    inputs, outputs = ([str(cell[0]) for cell in data[f"{what}_names"].ravel()] for what in ("input", "output"))
+    (exact,) = of_mechanism(mechanism, at(omega, 0.0), outputs, [roads.get(name, name) for name in inputs])
+    found = C @ np.linalg.solve(1j * omega[0] * E - A, B.astype(complex)) + D
+    for i, row in enumerate(found):
+        for j, value in enumerate(row):
+            assert abs(acb(value.real, value.imag) - exact[i, j]) <= 1e-8 * abs(exact[i, j])
 
 
 def test_a_design_beyond_doubles_is_refused_with_the_way_out() -> None:

@@ -24,7 +24,6 @@ from inerter.systems.linear import LinearSystem, check_names
 from inerter.systems.outputs import input_unit, velocity_of
 from inerter.systems.unknowns import state_units, unknowns
 from inerter.validation import checked
-from inerter.vehicle.mechanism import Mechanism
 from inerter.vehicle.vehicle import Vehicle, check_fixed, check_vehicle
 
 if TYPE_CHECKING:
@@ -179,11 +178,6 @@ def named_system(
     notes = [f"{note}." for note in linear_graph(mechanism).notes] + delay_notes(mechanism, descriptor.inputs)
     made = replace(made, notes=tuple(notes), title=title or "linear model")
     return _with_rounding(made, whole[:order, :order], doubt)
-
-
-def has_massless_nodes(mechanism: Mechanism) -> bool:
-    """Whether the linear model has a node that no mass holds."""
-    return len(linear_graph(mechanism).nodes) > len(mechanism.masses)
 
 
 def _blocks(whole: Matrix, order: int) -> tuple[Matrix, Matrix, Matrix, Matrix]:

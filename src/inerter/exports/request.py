@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import ExportError
-from inerter.exports.named_system import FORMS, NamedSystem, has_massless_nodes, named_system
+from inerter.exports.named_system import FORMS, NamedSystem, named_system
 from inerter.exports.refusals import refuse_moving_ground, refuse_nonlinear, refuse_notes
 from inerter.indices.definition import Index
 from inerter.networks.elements import Network
@@ -66,15 +66,6 @@ class ExportSpec:
         of = self.of if isinstance(self.of, LinearSystem) else self._vehicle("a vehicle or a LinearSystem")
         chosen = self.form or form or FORMS[0]
         return named_system(of, self.inputs, self.outputs, linear=self.linear, form=chosen, title=self.title)
-
-    def system_as_it_is(self) -> NamedSystem:
-        """The linear model, as a descriptor where nodes without mass make it one, unless a form was asked for."""
-        if isinstance(self.of, LinearSystem):
-            return self.system()
-        mechanism = self._vehicle("a vehicle or a LinearSystem").mechanism()
-        if not self.linear:
-            refuse_nonlinear(mechanism)
-        return self.system(FORMS[1] if has_massless_nodes(mechanism) else FORMS[0])
 
     @cached_property
     def mechanism(self) -> Mechanism:

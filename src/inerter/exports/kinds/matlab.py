@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from inerter.errors import ExportError
 from inerter.exports.kind import LINEAR_MODEL, ExportKind
-from inerter.exports.named_system import NamedSystem
+from inerter.exports.named_system import FORMS, NamedSystem
 from inerter.exports.request import ExportSpec
 from inerter.records.writers import write_record_matlab
+from inerter.systems.linear import LinearSystem
 
 Matrix = NDArray[np.float64]
 
@@ -26,7 +27,8 @@ def _make(request: ExportSpec, suffix: str) -> str | bytes:
         content = io.BytesIO()
         write_record_matlab(record, content)
         return content.getvalue()
-    system = request.system_as_it_is()
+    # A descriptor keeps digits far below all resonances that elimination of its unknowns would lose.
+    system = request.system(FORMS[0] if isinstance(request.of, LinearSystem) else FORMS[1])
     return matlab_script(system) if suffix == ".m" else matlab_file(system)
 
 

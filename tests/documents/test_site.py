@@ -115,23 +115,29 @@ def test_every_source_that_pages_name_is_among_the_references() -> None:
 
 
 def a_tree(first: str, group: str, member: str, at: str = "") -> str:
-    """The tree of three pages as Sphinx writes it: links to them, seen from the one at which the reader is."""
+    """The tree of three pages as the theme writes it: links to them, seen from the one at which the reader is."""
 
     def mark(attribute: str, *pages: str) -> str:
         return attribute if at in pages else ""
+
+    def item(level: int, *pages: str) -> str:
+        parent = " has-children" if len(pages) > 1 else ""
+        return f'<li class="toctree-l{level}{parent}{mark(" current", *pages)}{mark(" current-page", pages[0])}">'
 
     def link(name: str, target: str) -> str:
         return f'<a class="{mark("current ", name)}reference internal" href="{target}">{name}</a>'
 
     inner, outer = mark(' class="current"', "member"), mark(' class="current"', "first", "group", "member")
+    switch = f'<input {mark("""checked="" """, "group", "member")}class="toctree-checkbox" id="toctree-checkbox-1"/>'
+    arrow = '<label for="toctree-checkbox-1"><svg><use href="#svg-arrow-right"></use></svg></label>'
     return f"""<p class="caption"><span class="caption-text">Use</span></p>
 <ul{outer}>
-<li class="toctree-l1{mark(" current", "first")}">{link("first", first)}</li>
-<li class="toctree-l1{mark(" current", "group", "member")}">{link("group", group)}<ul{inner}>
-<li class="toctree-l2{mark(" current", "member")}">{link("member", member)}</li>
+{item(1, "first")}{link("first", first)}</li>
+<li class="toctree-l1"><a class="reference external" href="https://a.b/c">current c</a></li>
+{item(1, "group", "member")}{link("group", group)}{switch}{arrow}<ul{inner}>
+{item(2, "member")}{link("member", member)}</li>
 </ul>
 </li>
-<li class="toctree-l1"><a class="reference external" href="https://a.b/c">c</a></li>
 </ul>
 """
 

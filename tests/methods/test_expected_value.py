@@ -269,6 +269,19 @@ def test_the_bound_holds_where_one_peak_of_a_longer_road_sets_an_inerter_coastin
     assert not usual.status.ok
 
 
+def test_an_inerter_that_friction_holds_behind_an_open_gap_has_a_finite_bound():
+    """The model with closed gaps has 50 times its motion; the value is the norm without the branch."""
+    branch = Spring(5e5) | Damper(2e3)
+    held = QuarterCar(
+        300.0, 30.0, 2e5, Spring(3e4) | Damper(1500.0) | branch - Gap(0.2) - (Inerter(50.0) | Friction(10.0))
+    )
+    road = RideComfort(Road(1e-6, 20.0))
+    found = it.evaluate(held, road, TWO)
+    plain = it.evaluate(QuarterCar(300.0, 30.0, 2e5, Spring(3e4) | Damper(1500.0)), road, it.Norm())
+    assert found.value == pytest.approx(plain.value, rel=1e-6)
+    assert found.error_bound < 2.0
+
+
 @pytest.mark.parametrize(
     ("element", "words"),
     [(OneSidedStop(2e-3, "bump"), "stop 'bump' in 'strut'"), (Gap(2e-3, "g"), "gap 'g' in 'strut'")],

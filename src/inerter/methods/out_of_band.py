@@ -260,7 +260,9 @@ def out_of_band_contribution(design: OnRoads, found: Sequence[Squares]) -> OutOf
         unseen = max(unseen, _left_over(found))
     if design.play and unseen > _UNSEEN:
         above = design.definition.drive.amplitude_density**2 * squares_above(system, float(lines.omega[-1]))
-        share = max(share, float(np.max(above / np.maximum(power[:count], 1e-300))))
+        # Nothing is added below the band, where the model, which closes gaps, may move much more than the design.
+        below = np.abs(added[moving]) / power[:count][moving] - 2.0 * left * larger
+        share = float(np.max([below, above[moving] / power[:count][moving]], initial=0.0))
         return OutOfBandContribution(above, unseen, beyond=share, peaked=peaked, notes=(_loose_note(design.system),))
     if unseen > _LOST:
         return OutOfBandContribution(

@@ -250,6 +250,26 @@ def test_among_many_local_optima_points_are_searched_from_more_starts_and_ends_k
 
 
 @pytest.mark.campaign
+def test_points_among_many_local_optima_are_confirmed_by_independent_searches_or_doubted():
+    """The searches for the ends agree; the known designs are the best of 40 searches by SLSQP at equal tyre loads."""
+    link = it.Damper(it.free(100, 1e4, "c")) | it.Spring(it.free(1e3, 1e6, "s")) - it.Inerter(it.free(1, 2000, "b"))
+    front, rear = it.Spring(13439.85239441) | link, it.Spring(130802.367995418) | link
+    car = it.HalfCar(
+        1131.0386, 2250.70562, 46.5993924, 35.0284072, 87152.89679, 328450.1994, 1.249038798, 0.805884722, front, rear
+    )
+    road = it.Road(roughness=5e-7, speed=8.548728508)
+    indices = [it.RideComfort(road), it.TyreLoad(road)]
+    found = it.pareto_front(car, indices, NORM, points=7)
+    known = [(4598.777483, 38108.924237), (4405.824469, 123404.800818)]
+    designs = [car.with_values({"c": c, "s": s, "b": 1.0}) for c, s in known]
+    check_undominated(found, np.array([[it.evaluate(one, index, NORM).value for index in indices] for one in designs]))
+    assert found.statuses[0].ok
+    assert found.statuses[-1].ok
+    assert {status.kind for status in found.statuses[1:-1]} == {it.StatusKind.OK, it.StatusKind.INACCURATE}
+    assert "independent starts" in found.status.message
+
+
+@pytest.mark.campaign
 def test_a_front_that_no_design_reaches():
     front = it.pareto_front(paper_quarter_car(strut("S3")), [J1, J5], NORM, subject_to=[it.at_most(J3, 100.0)])
     assert front.values.shape == (0, 2)

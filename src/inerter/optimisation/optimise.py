@@ -211,7 +211,8 @@ def _best(
     if quick:
         search = partial(_quick_search, vehicle, index, method, problem)
         found, first, evaluations = search(starts, seed)
-        if _has_many_optima(problem, found):
+        is_peak = not limits and isinstance(objective, Differentiable) and objective.active(lower) is not None
+        if has_many_optima(found, is_peak):
             for number in (1, 2):
                 further, _, tried = search(_MORE * starts, seed + number, _DENSER)
                 lowest.append(min((local.value for local in further if local.excess <= KEPT), default=np.inf))
@@ -416,19 +417,17 @@ def check_free(vehicle: Vehicle) -> dict[str, Free]:
     return free
 
 
-def _has_many_optima(problem: ConstrainedProblem, found: Sequence[LocalOptimum]) -> bool:
+def has_many_optima(found: Sequence[LocalOptimum], is_peak: bool) -> bool:
     """Whether many searches ended at optima where no other did, as on the ripples that a delay makes at low speed.
 
     Their share estimates the probability that a further search ends at an optimum that is not known yet (Good, 1953).
     Where the optimum is flat, they end in several places with one value. Ends far above the lowest, or outside the
     limits, do not count; where there are some outside, a single one within is alone too.
     """
-    assert isinstance(problem.objective, Differentiable)
     kept = np.log([local.value for local in found if np.isfinite(local.value) and local.excess <= KEPT])
     if not kept.size:
         return False
     rivals = kept[kept < np.log(_RIVAL) + kept.min()]
-    is_peak = not problem.bounds and problem.objective.active(found[0].point) is not None
     others = (np.abs(rivals[:, None] - rivals) < (_ALIKE_PEAKS if is_peak else _ALIKE)).sum(axis=1) - 1
     alone = int(np.sum(others == 0))
     return bool(alone >= max(_LONELY * rivals.size, 2 if kept.size == len(found) else 1))

@@ -19,6 +19,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.errors import OK, DesignError, InerterError, PerformanceIndexError, Status, StatusKind, worst_of
+from inerter.formatting import format_share
 from inerter.methods.combined_objective import ObjectivePart, combine_objectives
 from inerter.methods.composite_index import IndexLike, estimate_of, objective_of
 from inerter.methods.method import Method, check_request
@@ -29,9 +30,10 @@ from inerter.optimisation.active_constraints import constraint_results
 from inerter.optimisation.constrained_search import ConstrainedProblem, refine_minimax, searches, trust_region
 from inerter.optimisation.limits import Bound, Limit, Sense, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum
-from inerter.optimisation.optimise import check_free, default_starts, optimise
+from inerter.optimisation.optimise import check_free, default_starts, has_many_optima, optimise
 from inerter.pareto_fronts.front import ParetoFront
 from inerter.pareto_fronts.points import (
+    SAME,
     FrontPoint,
     dominates,
     gap_key,
@@ -102,8 +104,8 @@ def pareto_front(
             ends.append(end)
         found_ends = [np.array(list(end.parameters.values())) for end in ends]
         trade = _trade(vehicle, criteria, method, limits, free, found_ends, int(seed))
-        has_many_optima = any(end.n_starts > default_starts(free) for end in ends)
-        trade = replace(trade, has_many_optima=has_many_optima).from_strict_ends()
+        many = any(end.n_starts > default_starts(free) for end in ends)
+        trade = replace(trade, has_many_optima=many).from_strict_ends()
         return _front(trade, trade.front(int(points)), [end.status for end in ends], int(seed))
 
 
@@ -168,6 +170,7 @@ class _Trade:
     seed: int
     given_scale: tuple[Array, Array] | None = None  # instead of that of the ends
     has_many_optima: bool = False  # as the searches for the ends have found
+    is_dense: bool = False  # a sample with more points, of which more are starts
 
     def criteria(self, points: Array) -> Array:
         """The indices (n, criteria) at each row of `points`."""
@@ -198,7 +201,7 @@ class _Trade:
             return self.hints, (table - self.scale[0]) / self.scale[1], own
         count = self.lower.size
         sampler = scipy.stats.qmc.Sobol(count, rng=np.random.default_rng(self.seed))
-        unit = sampler.random_base2(min(7 + count, 12) + (_DENSER if self.has_many_optima else 0))
+        unit = sampler.random_base2(min(7 + count, 12) + (_DENSER if self.is_dense else 0))
         points = np.exp(np.log(self.lower) + unit * (np.log(self.upper) - np.log(self.lower)))
         table = (self.criteria(points) - self.scale[0]) / self.scale[1]
         over = ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(points)
@@ -209,6 +212,15 @@ class _Trade:
     @cached_property
     def _quick(self) -> bool:
         return all(isinstance(one, Differentiable) for one in self.objectives) and is_smooth(self.bounds)
+
+    @cached_property
+    def _has_peaks(self) -> bool:
+        return any(one.active(self.lower) is not None for one in self.objectives)
+
+    @cached_property
+    def _denser(self) -> list[_Trade]:
+        """The problem with two independent samples, for searches among many local optima."""
+        return [replace(self, seed=self.seed + i, is_dense=True, given_scale=self.scale) for i in (1, 2)]
 
     def from_strict_ends(self) -> _Trade:
         """The problem with single optima that are also non-dominated."""
@@ -229,7 +241,7 @@ class _Trade:
         merit = np.max(table[:, which] - aim[list(which)], axis=1)
         merit = np.where(np.isfinite(merit), merit, np.inf)
         order = np.argsort(merit, kind="stable")
-        most = _STARTS * (_MORE if self.has_many_optima else 1)
+        most = _STARTS * (_MORE if self.is_dense else 1)
         lowest = [i for i in order[: 64 * most] if np.isfinite(merit[i]) and merit[i] <= merit[near[i]].min()]
         return [points[i] for i in lowest[:most]]
 
@@ -237,13 +249,22 @@ class _Trade:
         """The point of the front closest to an aim, from the sample and known points; None if none is feasible."""
         which = which or range(len(self.objectives))
         close = sorted(known, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
-        first = [one.point for one in close[:2]] + self.starts(aim, which)
+        first = [one.point for one in close[:2]] + ([] if self.has_many_optima else self.starts(aim, which))
         problem = self.problem(aim, which)
         found = searches(problem, first) if self._quick else [_costly(problem, first)]
+        lowest: list[float] = []  # of two searches that must agree, where there are many local optima
+        if self._quick and (self.has_many_optima or has_many_optima(found, self._has_peaks)):
+            for further in self._denser:
+                again = [one for one in searches(problem, further.starts(aim, which)) if one.excess <= 1e-6]
+                lowest.append(min((one.value for one in again), default=np.inf))
+                found += again
         kept = [one for one in found if one.excess <= 1e-6 and np.isfinite(one.value)]
         if not kept:
             return None
-        best = self.at(min(kept, key=lambda one: one.value).point)
+        nearest = min(kept, key=lambda one: one.value)
+        best = self.at(nearest.point)
+        if max(lowest, default=0.0) > nearest.value + SAME:
+            best = replace(best, status=_many_optima_status(max(lowest) - nearest.value))
         over = best.normal[list(which)] - aim[list(which)]
         if len(which) < len(self.objectives) or over.max() - over.min() > _SLACK:
             return self.strict(best)
@@ -266,7 +287,7 @@ class _Trade:
         if not self._quick:
             return found
         start = problem.at(found.point, 0)
-        better = self.at(refine_minimax(problem, start).point)
+        better = replace(self.at(refine_minimax(problem, start).point), status=found.status)
         gained = found.normal.sum() - better.normal.sum()
         no_worse_now = np.all(better.normal <= found.normal + _SLACK) and np.all(
             ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(better.point[None]) <= 1e-6
@@ -299,7 +320,7 @@ class _Trade:
             problem, best = self.problem(aim, which), self.closest_to(aim, found, which)
             again = refine_minimax(problem, problem.at(best.point, 0)) if self._quick else None
             if again is not None and again.excess <= 1e-6:
-                found.append(self.at(again.point))
+                found.append(replace(self.at(again.point), status=best.status))
         return non_dominated(found, which)
 
     def closest_to(self, aim: Array, found: Sequence[FrontPoint], which: Sequence[int]) -> FrontPoint:
@@ -365,6 +386,14 @@ class _Trade:
         return thin_out_triangle(found, count, ends)
 
 
+def _many_optima_status(apart: float) -> Status:
+    """Status of a point whose searches differ by that share of the range of the criteria."""
+    found = "one of two searches from independent starts found no design within the limits"
+    if np.isfinite(apart):
+        found = f"searches from independent starts end {format_share(apart)} of the range apart among many local optima"
+    return Status(StatusKind.INACCURATE, f"{found}, so that a better design may exist")
+
+
 def _costly(problem: ConstrainedProblem, first: Sequence[Array]) -> LocalOptimum:
     start = first[int(np.argmin(problem.values(np.array(first))))]
     return trust_region(problem, start)
@@ -423,7 +452,7 @@ def _front(
     designs = tuple(trade.vehicle.with_values(values) for values in parameters)
     estimates = tuple(tuple(estimate_of(design, one, trade.method) for one in trade.indices) for design in designs)
     values = np.array([[estimate.value for estimate in row] for row in estimates])
-    of_points = [[e.status for e in row] for row in estimates]
+    of_points = [[one.status, *(e.status for e in row)] for one, row in zip(several, estimates, strict=True)]
     for end, status in zip(np.argmin(values, axis=0).tolist(), of_ends, strict=True):
         of_points[end].append(status)
     statuses = tuple(map(worst_of, of_points))

@@ -8,17 +8,20 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inerter.errors import OK, Status
+
 Array = NDArray[np.float64]
-_SAME = 1e-4  # normalised distance within which two points are equal
+SAME = 1e-4  # normalised distance within which two points are equal
 
 
 @dataclass(frozen=True, eq=False)
 class FrontPoint:
-    """A design on the front: its point, its criteria, and these normalised."""
+    """A design on the front: its point, its criteria, these normalised, and the status of its search."""
 
     point: Array
     values: Array
     normal: Array
+    status: Status = OK
 
 
 def gap_key(found: Sequence[FrontPoint], i: int) -> tuple[bytes, bytes]:
@@ -36,7 +39,7 @@ def gaps(found: Sequence[FrontPoint], jumps: set[tuple[bytes, bytes]], which: Se
 def dominates(one: FrontPoint, other: FrontPoint) -> bool:
     """Whether `one` is better in a criterion by more than the tolerance, and worse in none."""
     gained = other.normal - one.normal
-    return bool(np.all(gained >= -1e-12) and np.any(gained > _SAME))
+    return bool(np.all(gained >= -1e-12) and np.any(gained > SAME))
 
 
 def non_dominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[FrontPoint]:
@@ -45,7 +48,7 @@ def non_dominated(found: Sequence[FrontPoint], which: Sequence[int]) -> list[Fro
     kept: list[int] = []
     for i in np.lexsort(table.T[::-1]):
         better = np.all(table <= table[i] + 1e-12, axis=1) & np.any(table < table[i] - 1e-9, axis=1)
-        twin = any(np.abs(table[i] - table[j]).max() < _SAME for j in kept)
+        twin = any(np.abs(table[i] - table[j]).max() < SAME for j in kept)
         if not better.any() and not twin:
             kept.append(int(i))
     return [found[i] for i in kept]
@@ -76,6 +79,6 @@ def thin_out_triangle(found: list[FrontPoint], count: int, ends: Sequence[FrontP
     while len(found) > count:
         table = np.array([one.normal for one in found])
         far = np.linalg.norm(table[:, None] - table[None], axis=2) + 1e9 * np.eye(len(found))
-        fixed = [any(np.abs(row - end.normal).max() < _SAME for end in ends) for row in table]
+        fixed = [any(np.abs(row - end.normal).max() < SAME for end in ends) for row in table]
         del found[int(np.argmin(np.where(fixed, np.inf, np.sort(far, axis=1)[:, :2].sum(axis=1))))]
     return found

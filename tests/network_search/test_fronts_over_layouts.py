@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from multiprocessing import get_context
@@ -14,10 +16,11 @@ from wang_su import ROAD, paper_quarter_car
 
 import inerter as it
 from inerter import Spring
-from inerter.errors import DesignError, PerformanceIndexError
+from inerter.errors import DesignError, PerformanceIndexError, Status, StatusKind
+from inerter.files.study.search_parts import NetworkFrontResult
 from inerter.kernels.network_norms import TradeOff, excess_in, norm_space
 from inerter.methods.network_norm import join_indices
-from inerter.network_search import fronts
+from inerter.network_search import fronts, plan
 from inerter.network_search.plan import plan_search
 
 COMFORT, LOAD, TRAVEL = it.RideComfort(ROAD), it.TyreLoad(ROAD), it.SuspensionTravel(ROAD)
@@ -160,6 +163,50 @@ def test_a_limit_holds_along_the_front():
         result.front[0].plans[0].design(result.front[0].topology), [COMFORT, LOAD], NORM, subject_to=limits, points=3
     )
     assert gain_on(result.values, alone.values) < 1e-5
+
+
+def test_a_point_keeps_the_doubt_of_its_search(monkeypatch):
+    """Of the search for an end, and of that for a point between the ends, also from a folder."""
+    doubt = Status(StatusKind.INACCURATE, "another start found a better one")
+
+    def points(*given, **more):
+        return [replace(one, status=doubt) for one in fronts_of_a_network(*given, **more)]
+
+    fronts_of_a_network = fronts.points_at_aims
+    monkeypatch.setattr(fronts, "points_at_aims", points)
+    searched = fronts.plan_front(car(2, springs=None), (COMFORT, it.LoadCarrying()), NORM, (), 0, None, 3)
+    searches = it.search(car(2, springs=None), (COMFORT, it.LoadCarrying()), NORM, points=3).searches
+    first = replace(searches[0], ranking=tuple(replace(one, status=doubt) for one in searches[0].ranking))
+    waves = fronts.front_waves(searched, [first, searches[1]])
+    found: list[fronts.NetworkPoints] | None = None
+    try:
+        while True:
+            scale, tasks = waves.send(found)
+            found = [
+                NetworkFrontResult("any", 1, "n", json.loads(json.dumps(_as_data(one)))).network_points()
+                for one in fronts.front_group(searched, scale, tasks)
+            ]
+    except StopIteration as end:
+        result = end.value
+    assert len(result.front) > 1
+    assert [one.status for one in result.front[:-1]] == [doubt] * (len(result.front) - 1)
+
+
+def test_a_network_has_the_status_of_its_search(monkeypatch):
+    """Where each network is searched by `optimise`, as with a limit."""
+    doubt = Status(StatusKind.INACCURATE, "another start found a better one")
+
+    def doubtful(*given, **more):
+        best = it.optimise(*given, **more)
+        return replace(best, estimate=replace(best.estimate, status=doubt))
+
+    monkeypatch.setattr(plan, "optimise", doubtful)
+    found = it.search(car(1), COMFORT, NORM, subject_to=[it.at_most(TRAVEL, 1.0)])
+    assert {one.status for one in found.ranking} == {doubt}
+
+
+def _as_data(points):
+    return {**vars(points), "topology": points.topology.tree}
 
 
 def test_a_peak_gain_and_a_norm():

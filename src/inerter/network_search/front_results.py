@@ -27,11 +27,12 @@ _AGREES = 1e-6  # relative difference up to which the search and the method itse
 
 @dataclass(frozen=True)
 class FrontDesign:
-    """A network with free values, by name, and the values of the indices."""
+    """A network with free values, by name, the values of the indices, and what its search leaves uncertain."""
 
     topology: Topology
     values: tuple[float, ...]
     parameters: dict[str, float] = field(compare=False)
+    doubt: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +53,7 @@ class FrontNetwork:
     parameters: dict[str, float]
     active_bounds: dict[str, str]
     plans: tuple[SearchPlan, ...]  # of each index
+    doubt: str = ""  # of the search: there may be a better design
 
     @property
     def n_elements(self) -> int:
@@ -70,7 +72,7 @@ class FrontNetwork:
 
     @cached_property
     def status(self) -> Status:
-        """Whether the design has these values by the method itself."""
+        """Whether the search is sure of the design, and whether it has these values by the method itself."""
         bad = worst_of(one.status for one in self.estimates)
         if not bad.ok:
             return bad
@@ -79,7 +81,7 @@ class FrontNetwork:
                 one, other = format_alike([value, estimate.value], estimate.unit)
                 message = f"the value of the search, {one}, differs from that of the design, {other}"
                 return Status(StatusKind.INACCURATE, message)
-        return OK
+        return Status(StatusKind.INACCURATE, self.doubt) if self.doubt else OK
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,7 +143,7 @@ def collect_front(
     first, known = plans[0], dict[FrontDesign, FrontNetwork]()
     for one in dict.fromkeys(design for several in fronts.values() for design in several):
         layout, active = first.topology_text(one.topology), first.active_bounds(one.topology, one.parameters)
-        known[one] = FrontNetwork(one.topology, layout, one.values, one.parameters, active, tuple(plans))
+        known[one] = FrontNetwork(one.topology, layout, one.values, one.parameters, active, tuple(plans), one.doubt)
     told = {layout: f"{result.symbol}: {reason}" for result in searches for layout, reason in result.failed}
     told |= {first.topology_text(topology): reason for topology, reason in (reasons or {}).items()}
     return NetworkFront(

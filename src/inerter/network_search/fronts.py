@@ -110,12 +110,13 @@ class NetworkPoints:
     values: tuple[tuple[float, ...], ...] = ()
     parameters: tuple[dict[str, float], ...] = ()
     reason: str = ""  # why there are none
+    doubts: tuple[str, ...] = ()  # of each, empty where its search is sure of it; none if all are
 
     @property
     def designs(self) -> list[FrontDesign]:
         """The designs as candidates for the front."""
-        rows = zip(self.values, self.parameters, strict=True)
-        return [FrontDesign(self.topology, values, parameters) for values, parameters in rows]
+        rows = zip(self.values, self.parameters, self.doubts or [""] * len(self.values), strict=True)
+        return [FrontDesign(self.topology, *row) for row in rows]
 
 
 def plan_front(
@@ -214,6 +215,7 @@ def _points_by_pareto_front(plan: FrontPlan, scale: FrontScale, task: FrontTask)
         tuple(aim for aim, _ in kept),
         tuple(tuple(one.values.tolist()) for _, one in kept),
         tuple(dict(zip(names, one.point.tolist(), strict=True)) for _, one in kept),
+        doubts=tuple(one.status.message for _, one in kept),
     )
 
 
@@ -256,6 +258,7 @@ class _SingleOptima:
     topology: Topology
     values: Array
     parameters: tuple[dict[str, float], ...]
+    doubts: tuple[str, ...]  # of the searches
 
     @property
     def ideal(self) -> Array:
@@ -265,8 +268,8 @@ class _SingleOptima:
     @property
     def designs(self) -> list[FrontDesign]:
         """The best design in each index."""
-        rows = zip(self.values.tolist(), self.parameters, strict=True)
-        return [FrontDesign(self.topology, tuple(row), parameters) for row, parameters in rows]
+        rows = zip(map(tuple, self.values.tolist()), self.parameters, self.doubts, strict=True)
+        return [FrontDesign(self.topology, *row) for row in rows]
 
 
 def _single_optima(plan: FrontPlan, searches: Sequence[SearchResult]) -> list[_SingleOptima]:
@@ -278,7 +281,8 @@ def _single_optima(plan: FrontPlan, searches: Sequence[SearchResult]) -> list[_S
         if len(own) == len(searches):
             values = _all_values(plan, own)
             np.fill_diagonal(values, [one.value for one in own])
-            found.append(_SingleOptima(topology, values, tuple(one.parameters for one in own)))
+            doubts = tuple(one.status.message for one in own)
+            found.append(_SingleOptima(topology, values, tuple(one.parameters for one in own), doubts))
     return found
 
 

@@ -238,5 +238,5 @@ def _search_by_optimise(plan: SearchPlan, topology: Topology) -> SearchedNetwork
         found.value,
         tuple(found.parameters[name] for name in names),
         others,
-        found.status.doubt,
+        found.status.message or found.status.doubt,
     )

@@ -135,6 +135,7 @@ class NetworkFrontResult(PartResult):
             tuple(map(tuple, given["values"])),
             tuple(given["parameters"]),
             given["reason"],
+            tuple(given.get("doubts", ())),  # which a folder of an earlier version does not have
         )
 
 

@@ -436,6 +436,41 @@ def test_what_linear_analysis_leaves_out_does_not_scatter_in_silence(spread: dic
 
 
 @pytest.mark.campaign
+def light_car(friction: float) -> it.QuarterCar:
+    """A light car with a parallel inerter whose nut has friction."""
+    strut = it.Spring(15e3) | it.Damper(299.7, name="c") | it.Inerter(2.08) | it.Friction(friction, name="f")
+    return it.QuarterCar(62.0, 11.5, 105e3, strut)
+
+
+def test_a_scatter_within_the_errors_of_the_values_is_uncertain() -> None:
+    """Nearly at its optimum: the index hardly changes with the values."""
+    comfort, method = it.RideComfort(it.Road(3.2e-7, 80 / 3.6)), it.StatisticalLinearisation()
+    found = it.tolerance_analysis(light_car(15.0), comfort, method, spread={"c": 0.15, "f": 0.3}, samples=256)
+    assert found.nominal.status.ok
+    assert found.nominal.error_bound * found.mean > found.standard_deviation > 0.0
+    assert "more than they scatter" in found.status.message
+    wide = it.tolerance_analysis(light_car(15.0), comfort, method, spread={"c": 0.5, "f": 0.1}, samples=256)
+    assert wide.nominal.error_bound * wide.mean < wide.standard_deviation
+    assert wide.status.ok
+    linear = it.tolerance_analysis(light_car(15.0), comfort, it.Norm(), spread={"c": 0.15}, samples=256)
+    assert linear.status.ok
+
+
+@pytest.mark.campaign
+def test_linearised_friction_may_scatter_several_times_less_than_simulated_friction() -> None:
+    """Which the bound of the values covers, and nothing else does."""
+    comfort = it.RideComfort(it.Road(3.2e-7, 80 / 3.6))
+
+    def change(method: it.Method) -> float:
+        values = [it.evaluate(light_car(f), comfort, method).value for f in (10.5, 19.5)]
+        return abs(values[1] - values[0])
+
+    linear, simulated = change(it.StatisticalLinearisation()), change(it.ExpectedValue(realisations=8, seed=1))
+    bound = it.evaluate(light_car(15.0), comfort, it.StatisticalLinearisation()).error_bound
+    assert simulated > 3.0 * linear
+    assert simulated < 2.0 * bound * it.evaluate(light_car(15.0), comfort, it.StatisticalLinearisation()).value
+
+
 def test_a_method_that_simulates_sees_friction_scatter() -> None:
     method = it.ExpectedValue(realisations=2, seed=1)
     found = it.tolerance_analysis(rubbing(), J1, method, spread={"f": 0.5}, samples=16)

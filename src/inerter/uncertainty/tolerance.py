@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
 from inerter.errors import OK, DesignError, Status, StatusKind, worst_of
+from inerter.formatting import format_percent_size
 from inerter.methods.averages import CONFIDENCE, NORMAL_QUANTILE
 from inerter.methods.composite_index import IndexLike, estimate_of
 from inerter.methods.conditions import OverConditions
+from inerter.methods.error_bounds import size_of_effects
 from inerter.methods.method import Estimate, Method, MethodWithExactFallback, constituents_of, evaluate, evaluate_many
 from inerter.notebook import shown_by
 from inerter.uncertainty.distributions import (
@@ -50,7 +52,8 @@ class Tolerance:
     `first_order` and `total_order` are the Sobol' indices of each value (estimates without error bound, which may
     slightly exceed the range 0 to 1), nan for values that the method neglects. `worst` is the largest value found, at
     the `worst_values`, in the sample and at the corners of the tolerances. All are nan, with a status, where the index
-    has no value for some of the sample, or where the method neglects all values with tolerances.
+    has no value for some of the sample, or where the method neglects all values with tolerances. The status is
+    "inaccurate" too where values may be off by more than they scatter.
 
     >>> import inerter as it
     >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(2600.0))
@@ -211,7 +214,9 @@ def _analyse(
         neglected_scatter(design, method, scatter, idle),
     )
     known = known and len(unseen) < count  # nothing is known of a scatter that the method neglects
-    if not known:
+    if known:
+        status = worst_of((status, _scatter_within_errors(both, here)))
+    else:
         both = np.full(both.shape, np.nan)
     first, total = _effects(both, mixed_values) if known else (np.full(count, np.nan),) * 2
     effects = [(np.nan,) * 2 if n in unseen else (f, t) for n, f, t in zip(names, first, total, strict=True)]
@@ -230,6 +235,21 @@ def _analyse(
         seed=seed,
         status=status,
     )
+
+
+def _scatter_within_errors(values: Array, nominal: Estimate) -> Status:
+    """Status of a scatter that errors of the values may cause: inaccurate if they are larger.
+
+    Errors of a road apart, which all values share: |std(v (1 + e)) - std(v)| <= max |e v|.
+    """
+    mean, scatter = abs(float(values.mean())), float(values.std())
+    bound = nominal.error_bound - size_of_effects(nominal.shared_errors)
+    if not bound * mean > max(scatter, _ROUNDING * mean):
+        return OK
+    message = (
+        f"values may be off by {format_percent_size(100.0 * bound)}, more than they scatter: the standard deviation"
+    )
+    return Status(StatusKind.INACCURATE, f"{message} and what causes it are uncertain")
 
 
 def rank_weights(count: int, share: float) -> Array:

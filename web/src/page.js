@@ -193,8 +193,8 @@ function Bar({ store, enter }) {
       <label>Link or token <input name="token" autocomplete="off" /></label> <button class="edged">Connect</button>
     </form>`}
     ${problems.length > 0 && html`<div class="problems" role="alert"><b>In the study</b><ul>
-      ${problems.map((problem) => html`<li class="problem">${problem.sentence.startsWith(problem.place.join(".")) ? ""
-        : html`<code>${problem.place.join(".")}</code> `}${problem.sentence}</li>`)}</ul></div>`}
+      ${problems.map(({ place, sentence }) => html`<li class="problem">${isNamed(place.join("."), sentence) ? ""
+        : html`<code>${place.join(".")}</code> `}${sentence}</li>`)}</ul></div>`}
     ${messages.map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
       ${offer && html`<button type="button" class="edged" onClick=${() => {
         store.dispatch({ type: "closed", about: key });
@@ -204,6 +204,10 @@ function Bar({ store, enter }) {
         onClick=${() => store.dispatch({ type: "closed", about: key })}>✕</button></p>`)}
   </div>`;
 }
+
+/** Whether a sentence begins with its place, in which some names are quoted. @param {string} place
+ * @param {string} sentence */
+const isNamed = (place, sentence) => sentence.replaceAll('"', "").startsWith(place);
 
 /** @param {{store: Store, api: Api}} props */
 function Tabs({ store, api }) {

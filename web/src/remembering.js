@@ -151,10 +151,13 @@ export function studiesFirst(store, files) {
 /** Whether a table is one of results, not a record. @param {File} file */
 const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
 
-/** Gives a message of what the page shows too. @param {Store} store @param {string} text @param {string} about */
+/** Gives a message of what the page shows too; a newer one about the same is not closed with it.
+ * @param {Store} store @param {string} text @param {string} about */
 function tellAWhile(store, text, about) {
   store.say(text, about);
-  setTimeout(() => store.dispatch({ type: "closed", about }), READ);
+  const said = store.get().messages.at(-1);
+  setTimeout(() => store.get().messages.some((each) => each === said) && store.dispatch({ type: "closed", about }),
+    READ);
 }
 
 /** @param {Store} store @param {Api} api @param {File} file */

@@ -5,7 +5,7 @@ import { answerOf, questions, soughtAnswer, soughtOf } from "../src/questions.js
 import { initial, reduce } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
-import { indexAxis, indexName, indexWords, percentChange } from "../src/panels/answers.js";
+import { indexAxis, indexName, indexWords, ownIndex, percentChange } from "../src/panels/answers.js";
 import { createStore } from "../src/state/store.js";
 import { keepAsking } from "../src/asking.js";
 import { partsOf } from "./reading.js";
@@ -314,6 +314,7 @@ test("an index has its name beside its title unless that contains it, as in the 
   assert.deepEqual([indexName(own), indexWords(own, ": "), indexAxis(own.symbol, own.title)],
     ["wk", "wk: ride comfort", "ride comfort wk"]);
   const words = { symbol: "suspension-travel", title: "suspension travel" };
+  assert.equal(indexWords(ownIndex("ride-comfort"), ", "), "ride comfort");
   assert.deepEqual([indexName(words), indexWords(words, ": "), indexAxis(words.symbol, words.title)],
     Array(3).fill("suspension travel"));
 });

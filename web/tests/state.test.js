@@ -19,7 +19,7 @@ import {
   unitFor,
   withUnit,
 } from "../src/state/scale.js";
-import { documentFrom } from "../src/remembering.js";
+import { documentFrom, open as openFiles } from "../src/remembering.js";
 import { createStore, initial, reduce } from "../src/state/store.js";
 import { limited } from "../src/panels/asked.js";
 import { elementsIn, freeIn, judging, numbersOf, quickMethod, treeOf } from "../src/library.js";
@@ -442,6 +442,23 @@ test("a network of a search replaces that of its layout, and no element of anoth
   assert.match(takeNetwork(store, found, { ...row("c2"), status: "failed" }), /^Unreliable/);
   store.dispatch({ type: "undone" });
   assert.equal(textOf(store.get().history.present), "k | c1");
+});
+
+test("a message about a file that was opened again stays as long as the first one did", async (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const store = createStore();
+  const read = { study: STUDY, kind: "run", problems: [] };
+  const api = /** @type {any} */ ({ post: async () => read });
+  const openIt = () => openFiles(store, api, [/** @type {any} */ ({ name: "car.toml", text: async () => "" })]);
+  const isTold = () => store.get().messages.some(({ text }) => text === "car.toml is open.");
+  await openIt();
+  context.mock.timers.tick(19_000);
+  assert.ok(isTold());
+  await openIt();
+  context.mock.timers.tick(2_000);
+  assert.ok(isTold());
+  context.mock.timers.tick(19_000);
+  assert.ok(!isTold());
 });
 
 test("a number without a unit has the unit that stands there, and a name the value that the library gives it", () => {

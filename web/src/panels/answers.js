@@ -7,6 +7,7 @@ import { aligned, withError, toPlaces, scaled, shown, unitFor, withUnit } from "
 import { DropDown, Select, Table, formHandler } from "../parts/controls.js";
 import { doubtsIn, isOk } from "../parts/doubts.js";
 import { html, useLayoutEffect, useMemo, useRef, useState } from "../parts/html.js";
+import { shortLabel } from "../network/drawing.js";
 import { layoutColour } from "../plots/colours.js";
 import { useLate, useShown } from "../parts/clock.js";
 import { Sketch, sketchesOf } from "./sketch.js";
@@ -96,7 +97,7 @@ function Ranking({ store, answer: { is, value, before } }) {
     <table><thead><tr><th scope="col">layout</th>
       <th scope="col" title=${goal && withUnit(goal.title, units.goal.unit)}>${
         goal ? withUnit(goal.index, units.goal.unit) : goalOf(state)}</th>
-      <th scope="col" title=${`gain on ${baseline}: + is better`}>gain on ${baseline}</th>
+      <th scope="col" title=${`gain on ${baseline}: + is better`}>gain on ${shortLabel(baseline)}</th>
       ${others.map((/** @type {any} */ { index, title }, /** @type {number} */ i) => html`<th scope="col" key=${index}
         title=${withUnit(title, units.others[i].unit)}>${withUnit(index, units.others[i].unit)}</th>`)}</tr></thead>
     <tbody key=${order}>${rows.map((row) => html`<${Row} key=${row.layout}
@@ -173,8 +174,11 @@ export function percentChange(value) {
 export function indicesOf(state, symbols = indicesIn(state.history.present.study)) {
   const known = state.about?.indices ?? [];
   return symbols.map((symbol) =>
-    known.find((/** @type {any} */ each) => each.symbol === symbol) ?? { symbol, title: symbol });
+    known.find((/** @type {any} */ each) => each.symbol === symbol) ?? ownIndex(symbol));
 }
+
+/** An index that the file names: its name is what it is called in words. @param {string} symbol */
+export const ownIndex = (symbol) => ({ symbol, title: symbol.replaceAll("-", " ") });
 
 /** Whether the title of an index contains its name, as the library sees it.
  * @param {{symbol: string, title: string}} index */

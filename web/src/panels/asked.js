@@ -8,7 +8,7 @@ import { freshName } from "../network/algebra.js";
 import { answerOf, goalOf } from "../questions.js";
 import { entryAt, indicesIn, own } from "../state/document.js";
 import { capital, completed, printed } from "../state/scale.js";
-import { indexName } from "./answers.js";
+import { indexName, ownIndex } from "./answers.js";
 import { Entry } from "./values.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -178,7 +178,7 @@ function indexNames(state) {
   const known = state.about?.indices ?? [];
   const others = [...Object.keys(study.indices ?? {}), ...indicesIn(study)].filter((symbol) =>
     !known.some((/** @type {any} */ each) => each.symbol === symbol));
-  return [...known, ...[...new Set(others)].map((symbol) => ({ symbol, title: symbol }))];
+  return [...known, ...[...new Set(others)].map(ownIndex)];
 }
 
 /** The limits of the study, as the library lists them. @param {State} state @returns {Limit[]} */

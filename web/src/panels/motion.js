@@ -87,8 +87,8 @@ function shownOf(state, mechanism, history) {
   };
 }
 
-/** A sentence of the server without the name of a file that nobody has seen. @param {string} sentence */
-const withoutFile = (sentence) => sentence.replace(/^study\.toml: /, "");
+/** Sentences of the server without the name of a file that nobody has seen. @param {string} sentences */
+const withoutFile = (sentences) => sentences.replace(/\bstudy\.toml: /g, "");
 
 /** Why the vehicle stands still, or its motion is no good. @param {any} mechanism @param {any} history
  * @returns {{words: string, doubt: boolean} | null} */

@@ -7,6 +7,7 @@ import { isSearched, judging, kindOf, layoutsWith, numbersOf, quickMethod, selec
 import { Moving } from "../parts/clock.js";
 import { Name, Select, formHandler, textHandler } from "../parts/controls.js";
 import { html, useState } from "../parts/html.js";
+import { shortLabel } from "../network/drawing.js";
 import { answerOf, bestOf, goalOf, isFitting, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
 import { STEPS, brief, briefIn, capital, completed, positionOf, printed, quantity, takenApart, valueAt }
@@ -91,7 +92,7 @@ function FindBest({ store, api }) {
   })}>
     <div class="head"><h2 id="values-title">Values</h2>
       ${all.length > 1 && all.includes(layout) && html`<button value="one" disabled=${!ready}
-        title="The others keep their values">Only ${layout}</button>`}
+        title="The others keep their values">Only ${shortLabel(layout)}</button>`}
       <button class=${isMain ? "main" : ""} id="find-best" disabled=${!ready}
         title="Of all layouts, so that they are compared at their best">Find best <kbd>O</kbd></button></div>
     <p role="status">${told.of === state.history.present && told.text}</p>

@@ -1,6 +1,7 @@
 // What is written over the picture: how the vehicle stands, how large motions are drawn, whose outline is dashed.
 
 import { NARROW } from "./layout.js";
+import { shortLabel } from "../network/drawing.js";
 import { capital } from "../state/scale.js";
 import { inWords } from "./naming.js";
 import { liftOf } from "./scene.js";
@@ -61,8 +62,8 @@ function scaleBar({ lift, width }, narrow) {
 function legend({ height, scene }, { own, other }, narrow, below) {
   const body = scene.column && scene.tracks.length > 0 ? "body on " : "";
   const y = narrow ? 62 + 16 * below : scene.column ? Math.max(112, 0.31 * height) : 20 + 16 * below;
-  const otherWords = body ? `on ${other}, same road` : `dashed: ${other}, same road`;
+  const otherWords = `${body ? "on" : "dashed:"} ${shortLabel(other)}, same road`;
   if (!scene.column) return [line([[12, y - 4], [30, y - 4]], "other trail"), text(36, y, otherWords)];
-  return [line([[12, y - 4], [30, y - 4]], "own"), text(36, y, `${body}${own}`),
+  return [line([[12, y - 4], [30, y - 4]], "own"), text(36, y, `${body}${shortLabel(own)}`),
     line([[12, y + 14], [30, y + 14]], "other trail"), text(36, y + 18, otherWords)];
 }

@@ -341,3 +341,21 @@ def test_an_equality_that_no_free_value_changes_keeps_no_search_from_the_optimum
     assert plain.value > 1.0001 * free.value
     assert fixed.value == pytest.approx(plain.value, rel=1e-9)
     assert (fixed.status.kind, fixed.n_converged) == (plain.status.kind, plain.n_converged)
+
+
+@pytest.mark.parametrize(("index", "other"), [(J1, J3), (J3, J1), (J5, J1)])
+def test_limits_that_the_best_design_keeps_are_no_search_of_their_own(index, other, monkeypatch):
+    """A design that no other one betters anywhere is the best of those within limits, too, if it keeps them."""
+    car = paper_quarter_car(it.Spring(120e3) | it.Damper(it.free(100.0, 1e5, "c")) - it.Inerter(it.free(1.0, 3e3, "b")))
+    best = it.optimise(car, index, NORM)
+    known = it.evaluate(best.design, other, NORM).value
+    narrow = it.optimise(car, index, NORM, subject_to=[it.at_most(other, 0.98 * known)])
+    assert narrow.value > best.value * (1.0 + 1e-6)  # a limit that it does not keep
+    monkeypatch.setattr(ConstrainedProblem, "rows", lambda *given: pytest.fail("searched within limits"))
+    limits = [it.at_most(other, 1.01 * known), it.at_least(other, 0.5 * known)]
+    within = it.optimise(car, index, NORM, subject_to=limits)
+    assert within.value == pytest.approx(best.value, rel=1e-12)
+    assert within.status.ok
+    assert [held.value for held in within.limits] == pytest.approx([known, known], rel=1e-6)
+    assert not within.active_limits
+    assert list(within.sensitivities.values()) == pytest.approx([0.0, 0.0], abs=1e-9)

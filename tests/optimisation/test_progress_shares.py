@@ -22,7 +22,7 @@ LIGHTER = replace(CAR, unsprung_mass=it.free(20.0, 30.0))  # with a free value t
 SEARCHES = {
     "norm": lambda: it.optimise(LIGHTER, COMFORT, it.Norm(), starts=6),
     "peak gain": lambda: it.optimise(LIGHTER, it.LoadCarrying(), it.Norm(), starts=6),
-    "constraint": lambda: it.optimise(CAR, COMFORT, it.Norm(), subject_to=[LOAD], starts=6),
+    "constraint": lambda: it.optimise(LIGHTER, COMFORT, it.Norm(), subject_to=[LOAD], starts=6),
     "peak gain with a constraint": lambda: it.optimise(CAR, it.LoadCarrying(), it.Norm(), subject_to=[LOAD], starts=3),
 }
 

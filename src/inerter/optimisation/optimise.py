@@ -294,16 +294,18 @@ def _compiled_searches(
     """Local optima in compiled code, where all free values are in one strut and norms need no delay.
 
     None elsewhere, and where by other code no start reaches the best value: a sharp peak or a rounding may be missed.
+    Limits are left out of these searches: if the best design of all keeps them, it is the best within them too.
     """
     objective = problem.objective
-    if problem.bounds or not isinstance(objective, CompiledNorm) or not is_exact_norm(method) or is_composite(index):
+    if not isinstance(objective, CompiledNorm) or not is_exact_norm(method) or is_composite(index):
         return None
     over = index_over_strut(vehicle, index)
     if over is None:
         return None
     order = [list(objective.problem.descriptor.free).index(name) for name in over.names]
     samples = quasi_random_points(starts * TRIED, len(order), seed)
-    report("starts", 0, starts, share=0.0)
+    if not problem.bounds:  # else other searches may follow, which report their own shares
+        report("starts", 0, starts, share=0.0)
     found = over.search(samples)
     if not np.isfinite(found.values.min()):
         return None
@@ -313,10 +315,16 @@ def _compiled_searches(
     lowest = found.values.min()
     if not abs(np.fmin.reduce(values) - lowest) <= _CONFIRMED * lowest:
         return None
-    report("starts", starts, starts, best=float(np.nanmin(values)), share=1.0)
+    excess = problem.excess(points) if problem.bounds else np.zeros(len(points))
+    if excess[np.nanargmin(values)] > 0.0:
+        return None
+    if not problem.bounds:
+        report("starts", starts, starts, best=float(np.nanmin(values)), share=1.0)
     return [
-        LocalOptimum(point, value if np.isfinite(value) else np.inf, evaluations)
-        for point, value, evaluations in zip(points, values.tolist(), found.evaluations.tolist(), strict=True)
+        LocalOptimum(point, value if np.isfinite(value) else np.inf, evaluations, over)
+        for point, value, evaluations, over in zip(
+            points, values.tolist(), found.evaluations.tolist(), excess.tolist(), strict=True
+        )
     ]
 
 

@@ -7,6 +7,7 @@ from itertools import combinations
 import matplotlib
 import numpy as np
 import pytest
+import xarray as xr
 from campaigns import sampled
 from matplotlib.colors import to_hex
 from synthetic import LONG, a_map, designs, improved, judged, sweep, with_value
@@ -149,6 +150,14 @@ def test_bars_say_what_is_not_a_number_and_what_is_cut():
     ax = improvement_bars(results, new_figure(height=3.0)[1][0])
     assert [text.get_text() for text in ax.texts][:3] == ["inf", "n/a", "−300.0"]
     assert min(bar.get_height() for bar in ax.containers[0]) == -100.0
+
+
+def test_numbers_of_bars_have_the_digits_of_the_table():
+    results = designs()
+    results["improvement_bound"] = xr.full_like(results["improvement"], 1.5)
+    results["improvement"].loc[{"layout": "S2"}] = [-2.46, 4.94, 13.7]
+    ax = improvement_bars(results, new_figure(height=3.0)[1][0])
+    assert [text.get_text() for text in ax.texts][:3] == ["−2", "5", "14"]
 
 
 def test_points_of_several_methods_that_are_cut_are_marked():

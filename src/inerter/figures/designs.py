@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from inerter.figures.labels import (
     axis_label,
+    bound_of,
     by_method,
     compared_layouts,
     index_words,
@@ -116,7 +117,7 @@ def _bars(ax: Axes, row: xr.Dataset, places: Array, width: float, style: LayoutS
     ax.bar(places, heights, 0.92 * width, label=style.label, **look)
     errors = _error_bars(ax, row, places, heights, linestyle="", color="black")
     ends = heights + np.where(heights >= 0.0, errors, -errors)
-    for place, height, text in zip(places, ends, _numbers(values, row["value"].values), strict=True):
+    for place, height, text in zip(places, ends, _numbers(row), strict=True):
         ax.annotate(
             text,
             (place, height),
@@ -148,14 +149,16 @@ def _leave_room(ax: Axes, share: float) -> None:
     ax.set_ylim(low - below * height, max(high, low + 1.0) + share * height)
 
 
-def _numbers(improvements: Array, values: Array) -> Iterator[str]:
-    for improvement, value in zip(improvements.tolist(), values.tolist(), strict=True):
-        if np.isinf(value):
+def _numbers(row: xr.Dataset) -> Iterator[str]:
+    """Improvement of each bar as text, with the digits that its largest error allows."""
+    for i, improvement in enumerate(row["improvement"].values.tolist()):
+        if np.isinf(float(row["value"][i])):
             yield "inf"
         elif not np.isfinite(improvement):
             yield "n/a"
         else:
-            yield typeset(format_percent_size(improvement).removesuffix(" %"))
+            bound = bound_of(row.isel(index=i), "improvement")
+            yield typeset(format_percent_size(improvement, bound=bound).removesuffix(" %"))
 
 
 def _show_peaks(ax: Axes, frequency: Array, curves: Array) -> None:

@@ -244,6 +244,12 @@ def test_friction_at_an_inerter_is_offered_to_all_layouts_that_have_it(visitor: 
     assert page.evaluate(kept) == {**before, "S3": joined["S3"]}
 
 
+def test_a_gap_says_that_its_value_is_half_of_the_backlash(visitor: Visitor) -> None:
+    page = visitor.page
+    page.get_by_role("button", name="Add a gap").click()
+    assert page.locator("[data-place='elements.gap'] > p").inner_text() == it.Gap.unit_note
+
+
 def test_a_new_part_may_vary_where_another_of_its_kind_may(visitor: Visitor) -> None:
     """Else a layout with it is compared at its first value with layouts at their best. It is one step to undo."""
     page = visitor.page

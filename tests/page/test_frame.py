@@ -342,6 +342,13 @@ def test_the_optimum_of_a_job_is_not_put_into_another_study(visitor: Visitor) ->
     visitor.settled()
     page.get_by_role("button", name="Find best").click()
     page.wait_for_selector(".job")
+    page.wait_for_function(  # it is scrolled into sight: forms are above it
+        """() => {
+          const [job, panel] = [".job", "#tab-panel"].map((each) =>
+            document.querySelector(each).getBoundingClientRect());
+          return panel.top - 1 <= job.top && job.top < panel.bottom - 20;
+        }"""
+    )
     page.fill("[id='entry elements.k']", "390 kN/m")
     page.keyboard.press("Enter")
     page.wait_for_selector(".job[data-state=done] >> text=Take", timeout=120_000)

@@ -27,12 +27,13 @@ from inerter import (
     StatisticalLinearisation,
     StatusKind,
     TyreLoad,
+    at_most,
     evaluate,
     evaluate_many,
     free,
     optimise,
 )
-from inerter.kernels import cache, gain, h2, harmonic
+from inerter.kernels import cache, gain, h2, harmonic, modal
 from inerter.kernels.decorators import Kernel
 from inerter.methods.objective import Differentiable
 
@@ -312,3 +313,17 @@ def test_a_search_calls_what_is_prepared_for_it(car, index, conventions, monkeyp
     optimise(vehicle, index, method, seed=0, starts=4)
     assert called <= set(prepared)
     assert set(prepared) - called <= {gain.gains}  # of peaks that none of these searches meets twice
+
+
+@pytest.mark.parametrize(("index", "other"), [(RideComfort(ROAD), TyreLoad(ROAD)), (TyreLoad(ROAD), LoadCarrying())])
+def test_a_search_within_limits_calls_what_is_prepared_for_it(index, other, monkeypatch):
+    vehicle, method, called = CARS["quarter S3"], Norm(), set()
+    mechanism = vehicle.mechanism()
+    definitions = [one.definition(mechanism) for one in (index, other)]
+    prepared = {kernel for one in definitions for kernel in method.kernels(one, search=vehicle, limited=True)}
+    best = evaluate(optimise(vehicle, index, method, seed=0, starts=4).design, other, method).value
+    call = Kernel.__call__
+    monkeypatch.setattr(Kernel, "__call__", lambda self, *given: called.add(self) or call(self, *given))
+    optimise(vehicle, index, method, subject_to=[at_most(other, 0.97 * best)], seed=0, starts=4)
+    assert modal.norms_by_modes in called  # far from the optimum covariances are not sure
+    assert called <= prepared

@@ -167,9 +167,9 @@ class ApproximateLinear(FormerMethodNames):
             result[i] = [estimate.value if estimate.status.ok else np.nan for estimate in estimates]
         return result
 
-    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None, limited: bool = False) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that start a search."""
-        quick = () if search is None else StatisticalLinearisation().kernels(definition, search=search)
+        quick = () if search is None else StatisticalLinearisation().kernels(definition, search=search, limited=limited)
         return (*quick, *KERNELS)
 
     def objective(self, vehicle: Vehicle, index: Index) -> Objective:

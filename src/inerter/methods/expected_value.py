@@ -165,9 +165,9 @@ class ExpectedValue(FormerMethodNames):
         changes = change(seeds)
         return changes[:count], changes[count:]
 
-    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None, limited: bool = False) -> tuple[Any, ...]:
         """Compiled functions of simulations, and of the methods that locate peaks and optima."""
-        quick = StatisticalLinearisation().kernels(definition, search=search)
+        quick = StatisticalLinearisation().kernels(definition, search=search, limited=limited)
         return (*quick, *KERNELS) if search is not None or definition.is_peak else KERNELS
 
     def _estimate(self, vehicle: Vehicle, index: Index, pool: ThreadPoolExecutor) -> Estimate:

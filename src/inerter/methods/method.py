@@ -146,8 +146,11 @@ class MethodWithChecks(Protocol):
 class MethodWithKernels(Protocol):
     """A method that calls compiled code."""
 
-    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
-        """Compiled functions called by an estimate, or by a search over a vehicle; the slowest to compile first."""
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None, limited: bool = False) -> tuple[Any, ...]:
+        """Compiled functions called by an estimate, or by a search over a vehicle; the slowest to compile first.
+
+        A `limited` search is one within limits, as that for a front.
+        """
         ...
 
 

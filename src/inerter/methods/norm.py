@@ -104,12 +104,12 @@ class Norm(FormerMethodNames):
             )
         return CompiledNorm(problem)
 
-    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None, limited: bool = False) -> tuple[Any, ...]:
         """The compiled code that a search calls; one design is valued without."""
         if search is None:
             return ()
         if is_exact_norm(self) and has_one_free_strut(search.mechanism()):
-            return (network_kernel(definition), *kernels_of(definition))
+            return (network_kernel(definition), *kernels_of(definition, by_modes=limited))
         return kernels_of(definition, by_modes=True)  # of the designs of which covariances are not sure
 
 

@@ -90,11 +90,11 @@ class StatisticalLinearisation(FormerMethodNames):
         """Raises what `estimate` would raise for the design's elements and the index's outputs, whatever the values."""
         self._closure(vehicle, index)
 
-    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None) -> tuple[Any, ...]:
+    def kernels(self, definition: IndexDefinition, *, search: Vehicle | None, limited: bool = False) -> tuple[Any, ...]:
         """Compiled functions of the method; a search of a design without friction uses those of `Norm`."""
         if definition.is_peak:
             return (*(() if search is None else kernels_of(definition)), harmonic.gains)
-        return kernels_of(definition)
+        return kernels_of(definition, by_modes=limited)
 
     def _many(self, vehicle: Vehicle, index: Index, points: Mapping[str, Array]) -> Array:
         closure = self._closure(vehicle, index)

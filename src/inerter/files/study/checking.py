@@ -206,11 +206,12 @@ def kernels(study: Study, design: Vehicle | None = None) -> list[Any]:
     `design` is any of its designs; default: that of the first layout.
     """
     found: list[Any] = []
+    limited = bool(study.limits or study.trade_off)
     design = study.design(next(iter(study.layouts))) if design is None else design
     for name in study.methods:
         method = study.method(name)
         if isinstance(method, MethodWithKernels):
             definitions = [study.index(index).definition(design.mechanism()) for index in study.indices]
             for definition in [*definitions, *limited_definitions(study, design)]:
-                found += method.kernels(definition, search=design if name == study.optimise else None)
+                found += method.kernels(definition, search=design if name == study.optimise else None, limited=limited)
     return list(dict.fromkeys(found))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
@@ -207,20 +207,16 @@ def _best(
         with within("best linear design", 0.0, 0.5 * _QUICK):
             linear = _linear_optimum(vehicle, index, method, limits, seed, starts)
     first: list[Array] = []
-    lowest: list[float] = []  # of two searches that must agree, where there are many local optima
     if quick:
         search = partial(_quick_search, vehicle, index, method, problem)
-        found, first, evaluations = search(starts, seed)
-        is_peak = not limits and isinstance(objective, Differentiable) and objective.active(lower) is not None
-        if has_many_optima(found, is_peak):
-            for number in (1, 2):
-                further, _, tried = search(_MORE * starts, seed + number, _DENSER)
-                lowest.append(min((local.value for local in further if local.excess <= KEPT), default=np.inf))
-                found, evaluations = found + further, evaluations + tried
+        found, first, evaluations, lowest = _search_widely(problem, search, starts, seed)
+        lowest_known = min((local.value for local in found if local.excess <= KEPT), default=np.inf)
     else:
         first = [] if linear is None else [linear]
         with within("quick approximation", 0.5 * _QUICK, _QUICK):
-            first += _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
+            near, lowest = _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
+            first += [local.point for local in near]
+            lowest_known = near[0].value if near else np.inf
         found, evaluations = _costly_searches(problem, _distinct_points(first))
     evaluations += sum(local.evaluations for local in found)
     kept = KEPT if quick else KEPT_COSTLY
@@ -249,8 +245,8 @@ def _best(
     )
     estimate = over_linear.first if over_linear else _verify_estimate(estimate_of(design, index, method), best.value)
     estimate = with_limits(estimate, held)
-    if estimate.status.ok and max(lowest, default=0.0) > best.value * (1.0 + agreement):
-        estimate = replace(estimate, status=_many_optima_status(lowest, estimate.unit))
+    if estimate.status.ok and max(lowest, default=0.0) > lowest_known * (1.0 + AGREEMENT):
+        estimate = replace(estimate, status=_many_optima_status(lowest, estimate.unit, quick))
     if not best.excess <= kept:
         estimate = replace(estimate, status=infeasible(held, parameters, vehicle.mechanism().units()))
     return Optimum(
@@ -266,6 +262,32 @@ def _best(
         gain_over_linear=over_linear,
         limits=held,
     )
+
+
+def _search_widely(
+    problem: ConstrainedProblem,
+    search: Callable[..., tuple[list[LocalOptimum], list[Array], int]],
+    starts: int,
+    seed: int,
+) -> tuple[list[LocalOptimum], list[Array], int, list[float]]:
+    """Ends of a `search`, its starting points and its evaluations; with two further ones where there are many optima.
+
+    Also the lowest values of these two, which must agree.
+    """
+    found, first, evaluations = search(starts, seed)
+    lowest: list[float] = []
+    if has_many_optima(found, _is_peak(problem)):
+        for number in (1, 2):
+            further, _, tried = search(_MORE * starts, seed + number, _DENSER)
+            lowest.append(min((local.value for local in further if local.excess <= KEPT), default=np.inf))
+            found, evaluations = found + further, evaluations + tried
+    return found, first, evaluations, lowest
+
+
+def _is_peak(problem: ConstrainedProblem) -> bool:
+    """Whether an index without limits is a peak gain, of which a search converges only the best optima."""
+    assert isinstance(problem.objective, Differentiable)
+    return not problem.bounds and problem.objective.active(problem.lower) is not None
 
 
 def _quick_search(
@@ -356,8 +378,11 @@ def _quick_optima(
     bounds: tuple[Array, Array],
     starts: int,
     seed: int,
-) -> list[Array]:
-    """Local optima, the best first, of the first quick method that supports the design; else points of a sample."""
+) -> tuple[list[LocalOptimum], list[float]]:
+    """Local optima, the best first, of the first quick method that supports the design; else points of a sample.
+
+    Also the lowest values of two searches that must agree, where there are many local optima.
+    """
     for quick in with_gradients(getattr(method, "conventions", "exact")):
         try:
             problem = ConstrainedProblem(
@@ -365,12 +390,22 @@ def _quick_optima(
             )
             if not (isinstance(problem.objective, Differentiable) and is_smooth(problem.bounds)):
                 continue
-            first, _ = _starting_points(problem, starts, seed)
+            found, _, _, lowest = _search_widely(problem, partial(_approximate_search, problem), starts, seed)
         except InerterError:
             continue
-        found = sorted(_searches(problem, first, quick=True), key=lambda local: (max(local.excess, KEPT), local.value))
-        return [local.point for local in found if np.isfinite(local.value)]
-    return _starting_points(ConstrainedProblem(objective_of(vehicle, index, method), (), *bounds), _MOST_TRIED, seed)[0]
+        found = [local for local in found if np.isfinite(local.value)]
+        return sorted(found, key=lambda local: (max(local.excess, KEPT), local.value)), lowest
+    problem = ConstrainedProblem(objective_of(vehicle, index, method), (), *bounds)
+    points, _ = _starting_points(problem, _MOST_TRIED, seed)
+    return [LocalOptimum(point, np.inf, 0) for point in points], []
+
+
+def _approximate_search(
+    problem: ConstrainedProblem, starts: int, seed: int, denser: int = 0
+) -> tuple[list[LocalOptimum], list[Array], int]:
+    """As `_quick_search`, of an approximation."""
+    points, evaluations = _starting_points(problem, starts, seed, denser)
+    return _searches(problem, points, quick=True), points, evaluations
 
 
 def _distinct_points(points: list[Array]) -> list[Array]:
@@ -441,11 +476,13 @@ def has_many_optima(found: Sequence[LocalOptimum], is_peak: bool) -> bool:
     return bool(alone >= max(_LONELY * rivals.size, 2 if kept.size == len(found) else 1))
 
 
-def _many_optima_status(lowest: Sequence[float], unit: str) -> Status:
-    found = "one of two searches from independent starts found no design within the limits"
+def _many_optima_status(lowest: Sequence[float], unit: str, is_own: bool) -> Status:
+    """Status where two searches differ, of the index itself or of its quick approximation."""
+    by = "" if is_own else " of a quick approximation"
+    found = f"one of two searches{by} from independent starts found no design within the limits"
     if np.all(np.isfinite(lowest)):
         first, second = format_alike(lowest, unit)
-        found = f"two searches from independent starts found {first} and {second} among many local optima"
+        found = f"two searches{by} from independent starts found {first} and {second} among many local optima"
     return Status(StatusKind.INACCURATE, f"{found}, so that a better one may exist")
 
 

@@ -46,7 +46,7 @@ _ROUNDS = 3
 _PARTS = ((0.0, 0.6), (0.6, 0.8), (0.8, 1.0))  # of a search that is repeated at most twice, mostly not at all
 _FINE, _POOR = 2.0, 20.0  # whitened residual (90th percentile) that requires no further search, and always does
 _FAIR = 1.5  # between them: limit over that of sensor noise
-_UNITS = 3  # wrong units that are named
+_UNITS, _FAILURES = 3, 2  # wrong units that are named, and those that explain nothing after which none is sought
 _SAME = 1e-3  # relative difference of the costs of two searches with the same result
 
 
@@ -230,14 +230,16 @@ def _assess(problem: FitProblem, point: Matrix, seed: int) -> tuple[float, bool]
 def _check_units(problem: FitProblem, chain: Chain | None, records: Sequence[Record], asked: FitOptions) -> None:
     """Raise `WrongUnitError` where searches with other usual units explain the records."""
     assumed = tuple(h for h in problem.assumed if h.name is not Suspect.QUADRATIC)
-    found, wrong = [], []
+    found, wrong, failures = [], [], 0
     for unit, read in likely_units(chain, records, problem.experiments):
         other, _, _ = _problem_of(read, problem.rig, chain, assumed, asked)
         point, _ = search(other, _guess(chain, other), asked.seed, asked.starts, QUICK)
         if _assess(other, point, asked.seed)[1]:
             found.append((unit, with_values(other.rig.device, other.space.values_by_name(point))))
             wrong = [old.source for old, new in zip(records, read, strict=True) if new is not old]
-        if len(found) == _UNITS:
+        else:
+            failures += 1
+        if len(found) == _UNITS or failures == _FAILURES:
             break
     if found:
         raise wrong_unit_error(wrong, found)

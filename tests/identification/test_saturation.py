@@ -8,7 +8,9 @@ from campaigns import sampled
 from troubled_rig import Device, Sensors, Tones, measured
 
 import inerter as it
-from inerter.records.saturation import _expected_at_turn, plateaus, saturated_samples
+from inerter.identification.experiment import experiment_of
+from inerter.identification.recording_faults import _saturation
+from inerter.records.saturation import _expected_at_turn, is_flat, plateaus, saturated_samples
 
 MODEL = (it.Spring(1e6) | it.Damper(3200.0)) - (
     it.Inerter(it.free(1.0, 500.0, name="b")) | it.Friction(it.free(0.0, 100.0, name="f"))
@@ -51,3 +53,25 @@ def test_the_turn_of_a_triangle_is_estimated_from_a_tenth_of_its_range() -> None
         band = 0.1 * (peak - force.min())
         expected = 2.0 * band / slope * np.sqrt(step / band)
         assert _expected_at_turn(force, peak, step) == pytest.approx(expected, abs=2.0 * np.sqrt(step / band))
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.2, 0.5])
+@pytest.mark.parametrize("frequencies", [(3.0,), (2.0, 5.3), (1.1, 3.7, 8.9)])
+def test_a_force_that_is_flat_at_no_extreme_is_not_called_clipped(frequencies: tuple[float, ...], noise: float) -> None:
+    random, time = np.random.default_rng(4), np.arange(4000) / 1000.0
+    phases = random.uniform(0.0, 6.0, len(frequencies))
+    smooth = 100.0 * sum(np.sin(2.0 * np.pi * f * time + p) for f, p in zip(frequencies, phases, strict=True))
+    drawn = noise * random.standard_normal(time.size)
+    limit = 0.8 * float(smooth.max())
+    for clipped in (False, True):
+        force = (np.minimum(smooth, limit) if clipped else smooth) + drawn
+        assert is_flat(force, float(force.max()), noise) == clipped
+        assert not is_flat(-force, float(-force.min()), noise)
+        record = it.Record(time, 1e-3 * smooth, force, force_noise=noise or None)
+        cause = _saturation([experiment_of(record)])
+        assert (cause is not None) == clipped
+        if cause is not None:
+            (unknown,) = cause.unknowns
+            said = cause.name.sentence(cause.details({unknown.name: limit}))
+            assert "clipped above" in said
+            assert "below" not in said

@@ -24,6 +24,7 @@ from inerter.identification.statements.patterns import MisfitPattern
 from inerter.records.instants import Instant
 from inerter.records.record import Record
 from inerter.records.repair import faulty_instants, without_faulty_samples
+from inerter.records.saturation import is_flat
 from inerter.records.slower_channels import SlowerChannel, slower_channel
 
 Matrix = NDArray[np.float64]
@@ -45,7 +46,9 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
     stroke = max(0.5 * float(np.ptp(e.motion.displacement)) for e in problem.experiments)
     fastest = max(float(np.abs(e.motion.velocity).max()) for e in problem.experiments)
     yield from nonlinear_load_cells(problem.experiments)
-    yield _saturation(problem.experiments)
+    saturation = _saturation(problem.experiments)
+    if saturation is not None:
+        yield saturation
     yield _clock(any(h.name is Suspect.DELAY for h in problem.assumed), problem.experiments)
     yield _cross_talk("displacement", "N/m", peak / stroke)
     yield _cross_talk("velocity", "N s/m", peak / fastest)
@@ -88,20 +91,29 @@ def _nonlinear_load_cell(suspect: Suspect, name: str, change_of_gain: Callable[[
     )
 
 
-def _saturation(experiments: Sequence[Experiment]) -> Hypothesis:
-    """A force clipped at an upper and a lower limit, which start near the measured extremes."""
-    upper, lower = Unknown("upper limit", "N", 1e-3, 1e6, 1.0), Unknown("lower limit", "N", 1e-3, 1e6, 1.0)
-    centred = [e.record.force - float(np.median(e.record.force)) for e in experiments]
-    high, low = max(float(f.max()) for f in centred), max(float(-f.min()) for f in centred)
-    start = {upper.name: max(0.97 * high, 2e-3), lower.name: max(0.97 * low, 2e-3)}
+def _saturation(experiments: Sequence[Experiment]) -> Hypothesis | None:
+    """A force clipped at the extremes at which it is flat, which limits start near; None where it is flat at none."""
+    centred = [(e.record.force - float(np.median(e.record.force)), e.noise) for e in experiments]
+    extremes = {sign: max(float((sign * force).max()) for force, _ in centred) for sign in (1.0, -1.0)}
+    flat = {
+        sign: Unknown("upper limit" if sign > 0.0 else "lower limit", "N", 1e-3, 1e6, 1.0)
+        for sign, extreme in extremes.items()
+        if any(is_flat(sign * force, float((sign * force).max()), noise) for force, noise in centred)
+    }
+    if not flat:
+        return None
+    start = {unknown.name: max(0.97 * extremes[sign], 2e-3) for sign, unknown in flat.items()}
+
+    def limit(values: Values, sign: float) -> float:
+        return values[flat[sign].name] if sign in flat else math.inf
 
     def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
-        return np.clip(force, -values[lower.name], values[upper.name])
+        return np.clip(force, -limit(values, -1.0), limit(values, 1.0))
 
     def details(values: Values) -> Details:
-        return {"upper": values[upper.name], "lower": values[lower.name]}
+        return {"upper": limit(values, 1.0), "lower": limit(values, -1.0)}
 
-    return Hypothesis(Suspect.SATURATION, (upper, lower), read=read, details=details, starts=(start,))
+    return Hypothesis(Suspect.SATURATION, tuple(flat.values()), read=read, details=details, starts=(start,))
 
 
 def _clock(delay_known: bool, experiments: Sequence[Experiment]) -> Hypothesis:

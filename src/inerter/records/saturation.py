@@ -13,6 +13,7 @@ from inerter.records.record import Record
 from inerter.records.smoothing import resolution
 
 Vector = NDArray[np.float64]
+_REACH, _BAND, _WIDE = 8.0, 0.1, 0.4  # times the noise that samples of one level lie apart; of the range; of the band
 FLAT = 3  # consecutive samples at the extreme value that count as clipping
 
 
@@ -44,6 +45,22 @@ def plateaus(record: Record) -> list[Plateau]:
         if longest >= FLAT and longest > 2.0 * _expected_at_turn(force, value, step):
             found.append(Plateau(value, longest))
     return found
+
+
+def is_flat(force: Vector, extreme: float, noise: float) -> bool:
+    """Whether a force with this r.m.s. noise stays near an extreme for longer than a smooth signal that turns there.
+
+    A smooth one is within a share of a band for the root of that share of its time there, a clipped one for nearly all.
+    Taken for flat where the noise is too large to tell.
+    """
+    band = _BAND * float(np.ptp(force))
+    reach = max(_REACH * noise, resolution(force), 1e-6 * band)
+    if reach > _WIDE * band:
+        return True
+    near, within = (
+        max(stop - start for start, stop in true_runs(np.abs(force - extreme) <= width)) for width in (reach, band)
+    )
+    return near >= FLAT and near > (reach / band) ** 0.25 * within
 
 
 def _equal_to(force: Vector, value: float) -> NDArray[np.bool_]:

@@ -78,8 +78,11 @@ def _end_stop_text(d: Details) -> str:
 
 
 def _saturation_text(d: Details) -> str:
-    upper, lower = format_alike([d["upper"], d["lower"]], "N", 3)
-    return f"the force is clipped above {upper} and below -{lower} (load cell or amplifier saturated)"
+    limits = [(word, sign * d[key]) for word, key, sign in (("above", "upper", 1.0), ("below", "lower", -1.0))]
+    known = [(word, limit) for word, limit in limits if math.isfinite(limit)]
+    sizes = format_alike([limit for _, limit in known], "N", 3)
+    where = " and ".join(f"{word} {size}" for (word, _), size in zip(known, sizes, strict=True))
+    return f"the force is clipped {where} (load cell or amplifier saturated)"
 
 
 def _changed_device_text(d: Details) -> str:

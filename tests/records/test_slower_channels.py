@@ -11,6 +11,7 @@ from quick_fits import explained, quick_fit
 import inerter as it
 from inerter.identification.models import MODELS
 from inerter.identification.statements.causes import Suspect
+from inerter.records.finding_texts import RecordFinding
 from inerter.records.inspection import findings
 from inerter.records.repair import repair
 from inerter.records.slower_channels import slower_channel
@@ -157,3 +158,25 @@ def test_a_repaired_record_has_readings_alone_and_gives_the_values(way: str) -> 
     for name, true in (("b", INERTANCE), ("c", DAMPING)):
         assert abs(space.values_by_name(best.point)[name] - true) < 4.0 * errors[name]
     assert repair(read).time.size == read.time.size
+
+
+@pytest.mark.parametrize("every", [4, 5.5])
+@pytest.mark.parametrize("role", ["force", "displacement"])
+@pytest.mark.parametrize("spiked", ["force", "displacement"])
+def test_spikes_are_found_beside_a_slower_channel_and_in_it(every: float, role: str, spiked: str) -> None:
+    """A spike of the slower channel is held like any other reading; its plateaus are no saturation."""
+    random, time = np.random.default_rng(0), np.arange(4000) / 1000.0
+    omega, size = 2.0 * np.pi * np.array([2.0, 5.3]), np.array([5e-3, 1e-3])
+    phase = np.outer(time, omega)
+    channels = {
+        "displacement": np.sin(phase) @ size + 1e-7 * random.standard_normal(4000),
+        "force": -100.0 * (np.sin(phase) @ (size * omega**2)) + 0.1 * random.standard_normal(4000),
+    }
+    at = np.minimum((np.floor(np.arange(4000) / every) * every).astype(int), 3999)
+    spike = int(round(1200 / every) * every) if spiked == role else 1201
+    channels[spiked][spike] += 4.0 * float(np.ptp(channels[spiked]))
+    channels[role] = channels[role][at]
+    found = {f.kind: f.about for f in findings(it.Record(time, **channels, force_bandwidth=100.0))}
+    assert found.get(RecordFinding.SPIKES) == spiked
+    assert found.get(RecordFinding.SLOWER) == role
+    assert not {RecordFinding.SATURATION, RecordFinding.JOINED, RecordFinding.SWAPPED} & set(found)

@@ -16,9 +16,9 @@ from inerter.records.finding import Finding
 from inerter.records.finding_texts import COARSE, LARGE, RecordFinding
 from inerter.records.instants import Instant
 from inerter.records.record import UNIFORM, Record
-from inerter.records.repair import faulty_instants
+from inerter.records.repair import faulty_instants, without_faulty_samples
 from inerter.records.saturation import plateaus, saturated_samples
-from inerter.records.slower_channels import slower_channel
+from inerter.records.slower_channels import at_readings, slower_channel
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
 from inerter.records.spectral_lines import isolated_line
 from inerter.statements import Severity, by_severity
@@ -50,10 +50,11 @@ def findings(record: Record) -> list[Finding]:
         *_implausible_sizes(record),
     ]
     if Severity.ERROR not in by_severity(found):
-        found += [*_saturation(record), *_steps(record), *_offsets(record), *_drift(record), *_instants(record)]
+        read = at_readings(record)  # between its readings a slower channel has plateaus and steps of its own
+        found += [*_saturation(read), *_steps(record), *_offsets(record), *_drift(record), *_instants(record, read)]
         if record.uniform:
             found += _slower_channels(record)
-            found += _motion_findings(record, smooth_displacement(record))
+            found += _motion_findings(read, smooth_displacement(read))
     return [finding for group in by_severity(found).values() for finding in group]
 
 
@@ -128,20 +129,21 @@ def _dropouts(record: Record) -> list[Finding]:
     return [Finding(RecordFinding.LOST_SAMPLES, Severity.WARNING, "displacement", numbers)]
 
 
-def _instants(record: Record) -> list[Finding]:
-    """Spikes, held values and joints, each kind with the channel that shows it."""
-    faulty = faulty_instants(record)
-    kinds = {
-        RecordFinding.SPIKES: faulty.spikes,
-        RecordFinding.HELD: faulty.held,
-        RecordFinding.JOINED: {"displacement": faulty.joints},
-    }
-    return [
-        Finding(kind, Severity.WARNING, role, _instant_summary(record, instants))
-        for kind, by_role in kinds.items()
-        for role, instants in by_role.items()
-        if instants
-    ]
+def _instants(record: Record, read: Record) -> list[Finding]:
+    """Spikes, held values and joints, each kind with the channel that shows it: a slower one in its readings alone."""
+    result = []
+    for role in ("displacement", "force"):
+        seen = record if read is record or slower_channel(getattr(record, role)) is None else read
+        faulty = faulty_instants(seen)
+        kinds = {RecordFinding.SPIKES: faulty.spikes[role], RecordFinding.HELD: faulty.held[role]}
+        if role == "displacement":
+            kinds[RecordFinding.JOINED] = faulty.joints
+        result += [
+            Finding(kind, Severity.WARNING, role, _instant_summary(seen, instants))
+            for kind, instants in kinds.items()
+            if instants
+        ]
+    return result
 
 
 def _instant_summary(record: Record, instants: list[Instant]) -> dict[str, float]:
@@ -306,9 +308,10 @@ def _median_and_midrange(values: Vector) -> float:
 
 def _swapped_columns(record: Record) -> list[Finding]:
     """A displacement is smoother than the force that it causes; the other way round the columns may be swapped."""
-    rough = {role: _roughness(getattr(record, role)) for role in ("displacement", "force")}
-    if rough["displacement"] < 10.0 * rough["force"] or rough["displacement"] < 1e-3:
-        return []
+    for read in (record, without_faulty_samples(record)):  # spikes are rough too
+        rough = {role: _roughness(getattr(read, role)) for role in ("displacement", "force")}
+        if rough["displacement"] < 10.0 * rough["force"] or rough["displacement"] < 1e-3:
+            return []
     return [Finding(RecordFinding.SWAPPED, Severity.WARNING, numbers=rough)]
 
 

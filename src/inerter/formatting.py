@@ -25,7 +25,7 @@ _SMALL, _LARGE = 1e-4, 1e6  # numbers in a prefixed unit; others are written wit
 _FAR = 100.0  # ratio of two numbers above which each has its own unit
 _LEAST_ERROR = 1e-6  # of the value; a smaller standard error is rounding
 _LEAST_PERCENT = 1e-4
-_TENTH = 0.1 * (1.0 + 1e-9)
+_TENTH = 0.5 * (1.0 + 1e-9)
 _SMALLEST, _LARGEST = 1e-6, 1e6  # errors that are written without a power of ten
 _NO_BREAK_SPACE = "\N{NO-BREAK SPACE}"
 _NUMBER = re.compile(r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)(?![\w.]*[A-Za-z_\d])")  # not in a name, such as k1
@@ -249,10 +249,10 @@ def format_share(share: float, digits: int = 3, sign: str = "") -> str:
 def format_percent(value: float, error: float = math.nan, bound: float = math.nan) -> str:
     """Improvement [%] with its sign and, if known, its standard error, as text; "-inf %", or "n/a" for nan.
 
-    `bound` is its largest other error [%]: beyond a tenth of a per cent there are no tenths, unless nothing else would
+    `bound` is its largest other error [%]: beyond half a per cent there are no tenths, unless nothing else would
     be left of a value that is larger than it.
 
-    >>> format_percent(13.74), format_percent(13.74, bound=0.2), format_percent(13.74, 0.05)
+    >>> format_percent(13.74), format_percent(13.74, bound=0.6), format_percent(13.74, 0.05)
     ('+13.7 %', '+14 %', '+13.740 +- 0.050 %')
     >>> format_percent(-0.38, bound=0.11), format_percent(0.38, bound=0.5)
     ('-0.4 %', '0 %')
@@ -292,11 +292,11 @@ def shows_error(value: float, error: float, bound: float = math.nan) -> bool:
 def decimal_places(value: float, bound: float = math.nan, error: float = math.nan, digits: int = _DIGITS) -> int:
     """Decimal places that a largest error `bound` and a standard `error` justify, both in the unit of the value.
 
-    As many as two digits of the standard error have, without one as make `digits` significant digits; the last place is
-    no smaller than the bound, but there are two significant digits at least, and one of a standard error. Below zero
-    the number is rounded to tens, hundreds, ...
+    As many as two digits of the standard error have, without one as make `digits` significant digits; of places that
+    round by no more than the bound the first is the last, but there are two significant digits at least, and one of a
+    standard error. Below zero the number is rounded to tens, hundreds, ...
 
-    >>> decimal_places(2.5094), decimal_places(2.5094, bound=0.002), decimal_places(2.5094, bound=1e-4, error=0.00046)
+    >>> decimal_places(2.5094), decimal_places(2.5094, bound=0.02), decimal_places(2.5094, bound=1e-4, error=0.00046)
     (3, 2, 4)
     """
     size = _exponent(value)
@@ -309,7 +309,7 @@ def decimal_places(value: float, bound: float = math.nan, error: float = math.na
         return fine
     if math.isinf(bound):
         return least
-    coarse = -math.ceil(math.log10(bound) - 1e-12)
+    coarse = -math.floor(math.log10(2.0 * bound) + 1e-12)
     return max(min(fine, coarse), least)
 
 
@@ -326,7 +326,7 @@ def shown_decimals(value: float, error: float, bound: float, digits: int = _DIGI
 def significant_digits(value: float, bound: float = math.nan, digits: int = _DIGITS) -> int:
     """Significant digits, `digits` at most, that a relative error `bound` justifies.
 
-    >>> significant_digits(2.5094), significant_digits(2.5094, bound=1e-3)
+    >>> significant_digits(2.5094), significant_digits(2.5094, bound=5e-3)
     (4, 3)
     """
     return max(decimal_places(value, bound * abs(value), digits=digits) + 1 + _exponent(value), 1)

@@ -143,6 +143,15 @@ def test_a_value_at_its_bound_is_told(client: TestClient) -> None:
     assert (at_bound in sentences(told)) == (told["rows"][0]["layout"] == "S3")
 
 
+@pytest.mark.parametrize(("roughness", "lifts"), [("5e-7 m^3/cycle", False), ("4e-6 m^3/cycle", True)])
+def test_a_tyre_that_leaves_the_road_is_told_first(client: TestClient, roughness: str, lifts: bool) -> None:
+    document = {**DOCUMENT, "road": {**DOCUMENT["road"], "roughness": roughness}}
+    values = {"S1": {"c": 1500.0}, "S3": {"c": 3000.0, "b": 60.0}}
+    first = ask(client, "panel/decision", study=document, values=values)["verdict"]["caveats"][:1]
+    assert any("a tyre leaves the road at times" in one["sentence"] for one in first) == lifts
+    assert not any("leaves the road" in one for one in sentences(ask(client, "panel/decision", study=document)))
+
+
 def test_a_baseline_that_is_not_among_the_designs_is_ranked_too(client: TestClient) -> None:
     designs = [{"layout": "S3", "values": {"c": 3000.0, "b": 60.0}}]
     baseline = {"layout": "S1", "values": {"c": 1500.0}, "name": "kept"}

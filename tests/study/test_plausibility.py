@@ -97,6 +97,20 @@ def test_an_answer_begins_with_what_no_vehicle_stands(tmp_path, capsys):
 
 
 @pytest.mark.usefixtures("undrawn")
+@pytest.mark.parametrize(("roughness", "lifts"), [("5e-7", False), ("4e-6", True)])
+def test_an_answer_says_where_a_tyre_leaves_the_road(tmp_path, capsys, roughness, lifts):
+    """J3 of this car is 549 N at 5e-7 and rises with the square root: three times 549 N is less than 2028 N."""
+    path = tmp_path / "study.toml"
+    text = QUARTER.replace("5e-7 m^3/cycle", f"{roughness} m^3/cycle")
+    path.write_text(text.replace('indices  = ["J1", "J3", "J5"]', 'indices = ["J3"]'), encoding="utf-8")
+    assert call(["run", str(path), "-o", str(tmp_path / "results")]) == 0
+    answer = " ".join(capsys.readouterr().out.split())
+    said = "with a static load of 2.028 kN in all: a tyre leaves the road at times, which the linear model ignores"
+    assert (said in answer) == lifts
+    assert "more than the static load" not in answer
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_an_answer_doubts_a_body_without_support_and_not_the_road_of_an_undamped_one(tmp_path, capsys):
     text = (
         QUARTER[: QUARTER.index("[layouts]")]

@@ -23,6 +23,7 @@ from inerter.formatting import format_list, printed_text
 from inerter.methods.compare import compare_estimates
 from inerter.methods.method import Estimate
 from inerter.methods.registry import brief_words_of, with_decisive_method
+from inerter.report.plausibility import value_warnings
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins
 from inerter.tasks.margins import margins as find_margins
 from inerter.validation import number_or_none
@@ -55,6 +56,8 @@ def decision(study: Study, body: Body) -> Answer:
         left_out=[one["layout"] for one in left_out],
         left_out_baseline=next((one["layout"] for one in left_out if one["is_baseline"]), ""),
     )
+    verdict = told.verdict.to_json()
+    verdict["caveats"] = [*_warnings(study, results), *verdict["caveats"]]
     return {
         "goal": {
             **describe_index(study, goal),
@@ -62,8 +65,18 @@ def decision(study: Study, body: Body) -> Answer:
         },
         "method": method,
         "rows": [compared.row(rank, result) for rank, result in zip(told.ranks, told.designs, strict=True)],
-        "verdict": typeset_sentences(told.verdict.to_json()),
+        "verdict": typeset_sentences(verdict),
     }
+
+
+def _warnings(study: Study, results: Sequence[DesignResult]) -> Iterator[Answer]:
+    """Caveats on values that no vehicle has, of designs whose values are chosen."""
+    values: dict[str, list[float]] = {}
+    for result in results:
+        for one in () if result.unchosen else (result.goal, *result.others):
+            values.setdefault(one.index, []).append(one.value)
+    for text in value_warnings(study, values):
+        yield {"kind": "implausible", "sentence": text.removeprefix("Warning: "), "severity": "warning"}
 
 
 def margins(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:

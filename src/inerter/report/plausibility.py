@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from math import hypot
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from inerter.errors import InerterError
 from inerter.files.common.suggest import some
@@ -19,35 +21,57 @@ from inerter.systems.static_loads import static_tyre_loads
 from inerter.units import STANDARD_GRAVITY
 from inerter.vehicle.registry import VEHICLES
 
+_LIFT_OFF = 3.0  # times the r.m.s. load, which a load exceeds 0.1 % of the time
+
 
 def result_warnings(results: xr.Dataset, study: Study) -> Iterator[str]:
-    """Warnings on bodies without support, accelerations beyond that of gravity, and tyre loads beyond the static."""
+    """Warnings on bodies without support, accelerations beyond that of gravity, and tyres that leave the road."""
     if study.road is None or study.model not in VEHICLES:
         return
     if unsupported := [name for name in study.layouts if lacks_equilibrium(study.design(name).mechanism())]:
         yield f"Warning: {NO_EQUILIBRIUM} with {some(unsupported)}. Put a spring in parallel."
-    for name in study.indices:
-        kind, values = INDICES.get(study.symbol(name)), results["value"].sel(index=name)
-        finite = values.values[np.isfinite(values.values)]  # of an infinite one the status tells the cause
-        largest = float(finite.max(initial=0.0))
+    yield from value_warnings(study, {name: results["value"].sel(index=name).values for name in study.indices})
+
+
+def value_warnings(study: Study, values: Mapping[str, ArrayLike]) -> Iterator[str]:
+    """Warnings on accelerations beyond that of gravity, and on tyres that leave the road, by values of each index."""
+    for name in values if study.road is not None and study.model in VEHICLES else ():
+        kind, known = INDICES.get(study.symbol(name)), np.asarray(values[name], dtype=float)
+        largest = float(known[np.isfinite(known)].max(initial=0.0))  # of an infinite one the status tells the cause
         if kind is RideComfort and largest > STANDARD_GRAVITY:
             yield (
                 f"Warning: {name} reaches {format_quantity(largest, 'm/s^2')} r.m.s., more than the acceleration of "
                 f"gravity, which no vehicle stands. Check the road's roughness and speed."
             )
-        if kind is TyreLoad and (static := _static_load(study)) and largest > static:
-            load, limit = format_alike([largest, static], "N")
-            yield (
-                f"Warning: {name} reaches {load} r.m.s., more than the static load of {limit}: the tyres would leave "
-                f"the road, which the linear model ignores. Check the road's roughness and speed."
-            )
+        if kind is TyreLoad:
+            yield from _lift_off_warning(name, largest, study)
 
 
-def _static_load(study: Study) -> float:
-    """Sum of the static loads of all tyres [N]; 0 if unknown."""
+def _lift_off_warning(name: str, largest: float, study: Study) -> Iterator[str]:
+    """Warning where a load has three times its r.m.s. value in more than its static load, or that alone in all of it.
+
+    If no tyre exceeded a third of its static load, the root of the sum of squares would not exceed a third of theirs.
+    """
+    weighted = [weight * static for static, weight in _static_loads(study)]
+    if not weighted or largest <= hypot(*weighted) / _LIFT_OFF:
+        return
+    load, limit = format_alike([largest, sum(weighted)], "N")
+    beyond = largest > sum(weighted)
+    how = f"more than the static load of {limit}" if beyond else f"with a static load of {limit} in all"
+    when = "the tyres would leave the road" if beyond else "a tyre leaves the road at times"
+    yield (
+        f"Warning: {name} reaches {load} r.m.s., {how}: {when}, which the linear model ignores. Check the road's "
+        "roughness and speed."
+    )
+
+
+def _static_loads(study: Study) -> list[tuple[float, float]]:
+    """Static load of each tyre [N] with its weight in J3; none if they are unknown."""
     try:
         design = study.design(next(iter(study.layouts)))
         free = {name: free.lower for name, free in design.free_values().items()}
-        return sum(static_tyre_loads(design.with_values(free)).values())
+        loads = static_tyre_loads(design.with_values(free))
     except InerterError:
-        return 0.0
+        return []
+    weights = {output.output: output.weight for output in design.mechanism().tyre_loads}
+    return [(load, weights.get(f"{tyre}_load", 0.0)) for tyre, load in loads.items()]

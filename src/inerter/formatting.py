@@ -254,7 +254,7 @@ def format_percent(value: float, error: float = math.nan, bound: float = math.na
 
     >>> format_percent(13.74), format_percent(13.74, bound=0.6), format_percent(13.74, 0.05)
     ('+13.7 %', '+14 %', '+13.740 +- 0.050 %')
-    >>> format_percent(-0.38, bound=0.11), format_percent(0.38, bound=0.5)
+    >>> format_percent(-0.38, bound=0.11), format_percent(0.38, bound=0.6)
     ('-0.4 %', '0 %')
     """
     if math.isnan(value):

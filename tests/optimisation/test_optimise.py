@@ -290,6 +290,7 @@ def test_within_limits_more_starts_are_made_too(speed, limit, better):
     assert best.n_starts > 16
 
 
+@pytest.mark.campaign
 def test_one_optimum_alone_within_the_limits_is_searched_for_again():
     """Of sixteen starts one ends within the limit, so that nothing tells whether there is a better design."""
     car, road = half_car_of_many_optima(), it.Road(5e-7, 1.4)

@@ -132,9 +132,10 @@ def _dropouts(record: Record) -> list[Finding]:
 def _instants(record: Record, read: Record) -> list[Finding]:
     """Spikes, held values and joints, each kind with the channel that shows it: a slower one in its readings alone."""
     result = []
+    of_read = faulty_instants(read)
     for role in ("displacement", "force"):
-        seen = record if read is record or slower_channel(getattr(record, role)) is None else read
-        faulty = faulty_instants(seen)
+        is_read = read is record or slower_channel(getattr(record, role)) is not None
+        seen, faulty = (read, of_read) if is_read else (record, faulty_instants(record))
         kinds = {RecordFinding.SPIKES: faulty.spikes[role], RecordFinding.HELD: faulty.held[role]}
         if role == "displacement":
             kinds[RecordFinding.JOINED] = faulty.joints
@@ -308,11 +309,16 @@ def _median_and_midrange(values: Vector) -> float:
 
 def _swapped_columns(record: Record) -> list[Finding]:
     """A displacement is smoother than the force that it causes; the other way round the columns may be swapped."""
-    for read in (record, without_faulty_samples(record)):  # spikes are rough too
-        rough = {role: _roughness(getattr(read, role)) for role in ("displacement", "force")}
-        if rough["displacement"] < 10.0 * rough["force"] or rough["displacement"] < 1e-3:
-            return []
-    return [Finding(RecordFinding.SWAPPED, Severity.WARNING, numbers=rough)]
+    if _columns_that_look_swapped(record):
+        rough = _columns_that_look_swapped(without_faulty_samples(record))  # spikes are rough too
+        return [Finding(RecordFinding.SWAPPED, Severity.WARNING, numbers=rough)] if rough else []
+    return []
+
+
+def _columns_that_look_swapped(record: Record) -> dict[str, float]:
+    """Roughness of both channels where that of the displacement is far larger; else empty."""
+    rough = {role: _roughness(getattr(record, role)) for role in ("displacement", "force")}
+    return rough if rough["displacement"] >= max(10.0 * rough["force"], 1e-3) else {}
 
 
 def _roughness(values: Vector) -> float:

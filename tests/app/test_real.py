@@ -251,3 +251,28 @@ def test_a_study_object_is_served_as_the_file_that_asks_the_same(tmp_path: Path)
     path = tmp_path / named[0]
     path.write_text(named[1], encoding="utf-8")
     assert it.load_study(path).to_tables() == study.to_tables()
+
+
+SWALLOWED = """
+import os, signal, sys
+from inerter.app import running
+
+def load(name, real=running.import_module):
+    try:
+        if name.startswith("inerter"):
+            os.kill(os.getpid(), signal.{})
+    except BaseException:  # as libraries do
+        print("swallowed", flush=True)
+    return real(name)
+
+running.import_module = load
+running.run(None, port=None, browser=False, limits=(10, 10), folder=None, tell=print)
+print("ended", flush=True)
+"""
+
+
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT"])
+def test_an_interrupt_that_what_is_loaded_swallows_ends_it_all_the_same(name: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-c", SWALLOWED.replace("{}", name)]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=False)
+    assert done.stdout.splitlines()[1:] == ["swallowed", "ended"], done.stderr

@@ -373,6 +373,7 @@ def test_the_layout_opens_of_which_the_verdict_speaks(
         return page.inner_text("#verdict > b").startswith(selected(visitor) + " ")
 
     assert is_best()
+    page.wait_for_function("() => sessionStorage.getItem('inerter.document') !== null")  # it is kept a little later
     assert selected(visitor) != page.evaluate(
         "() => Object.keys(JSON.parse(sessionStorage.getItem('inerter.document')).study.layouts).at(-1)"
     )

@@ -97,8 +97,12 @@ def _left(visitor: Visitor, session: Any) -> tuple[float, float]:
     """Heap [byte] and nodes after what is not needed was taken away."""
     visitor.settled()
     visitor.drawn()
-    session.send("HeapProfiler.collectGarbage")
-    found = {one["name"]: one["value"] for one in session.send("Performance.getMetrics")["metrics"]}
+    nodes, found = -1.0, {"Nodes": 0.0}
+    while found["Nodes"] != nodes:  # on a busy machine the last answers are drawn late
+        nodes = found["Nodes"]
+        visitor.page.wait_for_timeout(300)
+        session.send("HeapProfiler.collectGarbage")
+        found = {one["name"]: one["value"] for one in session.send("Performance.getMetrics")["metrics"]}
     return found["JSHeapUsedSize"], found["Nodes"]
 
 

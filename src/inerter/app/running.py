@@ -15,7 +15,7 @@ from importlib import import_module
 from pathlib import Path
 from pkgutil import resolve_name
 from tempfile import TemporaryDirectory
-from threading import Thread, current_thread, main_thread
+from threading import Event, Thread, current_thread, main_thread
 from typing import Any
 
 import uvicorn
@@ -42,7 +42,7 @@ def run(
     if min(limits) < 1:
         raise StudyError(f"A limit must be a positive number of bytes, got {min(limits)}.")
     file, token = _text_of(study), _token()
-    with _listening(port) as listening, _folder(folder) as root, _ended_gently():
+    with _listening(port) as listening, _folder(folder) as root, _ended_gently() as ended:
         _many_connections()
         quick = Processes(1)
         begun = Thread(target=_begin, args=(quick,), daemon=True)
@@ -58,25 +58,32 @@ def run(
         config = uvicorn.Config(
             app, log_level="warning", lifespan="on", timeout_graceful_shutdown=2, backlog=_BACKLOG, **settings
         )
-        with suppress(KeyboardInterrupt):
-            uvicorn.Server(config).run(sockets=[listening])
+        if not ended.is_set():  # nor was an interrupt swallowed by what was loaded
+            with suppress(KeyboardInterrupt):
+                uvicorn.Server(config).run(sockets=[listening])
 
 
 @contextmanager
-def _ended_gently() -> Iterator[None]:
-    """Raise KeyboardInterrupt at SIGTERM within the block, so that cleanup runs as after Ctrl-C."""
+def _ended_gently() -> Iterator[Event]:
+    """Raise KeyboardInterrupt at SIGTERM within the block, so that cleanup runs as after Ctrl-C.
+
+    The event tells of both: some libraries swallow every exception while they are loaded, that of an interrupt too.
+    """
+    ended = Event()
     if current_thread() is not main_thread():
-        yield
+        yield ended
         return
 
     def end(number: int, frame: object) -> None:
+        ended.set()
         raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, end)
+    before = {number: signal.signal(number, end) for number in (signal.SIGTERM, signal.SIGINT)}
     try:
-        yield
+        yield ended
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _begin(process: Processes) -> None:

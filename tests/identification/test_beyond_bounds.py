@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from growing_tones import growing_tones
 from quick_fits import explained, quick_fit
 
 import inerter as it
@@ -19,17 +20,10 @@ INERTANCE, FRICTION, NOISE = 120.0, 800.0, 0.5  # [kg], [N], [N]; the friction o
 def record(friction: float = FRICTION) -> it.Record:
     """Two tones that grow from rest, and the force of a rigid inerter with friction, in closed form."""
     random, time = np.random.default_rng(3), np.arange(400) / 200.0
-    omega, size = 2.0 * np.pi * np.array([1.3, 3.1]), np.array([8e-3, 2e-3])
-    share = np.minimum(time / 0.5, 1.0)
-    ramp = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-    slope = 60.0 * share**2 * (1.0 - share) ** 2
-    bend = np.where(share < 1.0, 240.0 * share * (1.0 - 3.0 * share + 2.0 * share**2), 0.0)
-    sine, cosine = np.sin(np.outer(time, omega)), np.cos(np.outer(time, omega))
-    x, v, a = sine @ size, cosine @ (size * omega), -sine @ (size * omega**2)
-    velocity = ramp * v + slope * x
-    force = INERTANCE * (ramp * a + 2.0 * slope * v + bend * x) + friction * np.sign(velocity)
+    x, v, a = growing_tones(time)
+    force = INERTANCE * a + friction * np.sign(v)
     return it.Record(
-        time, ramp * x + 1e-7 * random.standard_normal(400), force + NOISE * random.standard_normal(400),
+        time, x + 1e-7 * random.standard_normal(400), force + NOISE * random.standard_normal(400),
         force_bandwidth=5000.0, force_noise=NOISE, displacement_noise=1e-7,
     )  # fmt: skip
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from growing_tones import growing_tones
 
 import inerter as it
 from inerter.errors import RecordError
@@ -19,16 +20,10 @@ MODEL = it.Inerter(it.free(20.0, 400.0, name="b")) | it.Friction(it.free(0.0, 50
 def record(fixture: float = 0.0) -> it.Record:
     """Two tones that grow from rest, and the force of a rigid inerter with friction and a fixture, in closed form."""
     random, time = np.random.default_rng(5), np.arange(500) / 200.0
-    omega, size = 2.0 * np.pi * np.array([1.3, 3.1]), np.array([8e-3, 2e-3])
-    share = np.minimum(time / 0.5, 1.0)
-    ramp = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
-    slope = 60.0 * share**2 * (1.0 - share) ** 2
-    bend = np.where(share < 1.0, 240.0 * share * (1.0 - 3.0 * share + 2.0 * share**2), 0.0)
-    sine, cosine = np.sin(np.outer(time, omega)), np.cos(np.outer(time, omega))
-    x, v, a = sine @ size, cosine @ (size * omega), -sine @ (size * omega**2)
-    force = (INERTANCE + fixture) * (ramp * a + 2.0 * slope * v + bend * x) + FRICTION * np.sign(ramp * v + slope * x)
+    x, v, a = growing_tones(time)
+    force = (INERTANCE + fixture) * a + FRICTION * np.sign(v)
     return it.Record(
-        time, ramp * x + 1e-7 * random.standard_normal(500), force + NOISE * random.standard_normal(500),
+        time, x + 1e-7 * random.standard_normal(500), force + NOISE * random.standard_normal(500),
         source="bench.csv", force_bandwidth=5000.0, fixture_mass=fixture or None,
     )  # fmt: skip
 

@@ -76,7 +76,7 @@ def _warnings(study: Study, results: Sequence[DesignResult]) -> Iterator[Answer]
         for one in () if result.unchosen else (result.goal, *result.others):
             values.setdefault(one.index, []).append(one.value)
     for text in value_warnings(study, values):
-        yield {"kind": "implausible", "sentence": text.removeprefix("Warning: "), "severity": "warning"}
+        yield {"kind": "implausible", "sentence": text, "severity": "warning"}
 
 
 def margins(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:

@@ -108,9 +108,10 @@ def _worse(contest: Contest) -> Iterator[Caveat]:
             if (by := other.improvement) is not None and not by.is_equal and by.percent < 0.0:
                 worse.setdefault(capital(other.words), {}).setdefault(by.size, []).append(one.name)
     for index, sizes in worse.items():
-        clauses = [f"{format_list(names)} {size}" for size, names in sizes.items()]
-        size, names = next(iter(sizes.items()))
-        clauses[0] = f"{format_list(names)} {'is' if len(names) == 1 else 'are'} {size}"
+        clauses = [
+            f"{format_list(names)}{'' if i else ' is' if len(names) == 1 else ' are'} {size}"
+            for i, (size, names) in enumerate(sizes.items())
+        ]
         yield Caveat(CaveatKind.WORSE, f"{index} gets worse: {format_list(clauses)} worse than {base.name}.")
 
 

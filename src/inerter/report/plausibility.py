@@ -30,7 +30,8 @@ def result_warnings(results: xr.Dataset, study: Study) -> Iterator[str]:
         return
     if unsupported := [name for name in study.layouts if lacks_equilibrium(study.design(name).mechanism())]:
         yield f"Warning: {NO_EQUILIBRIUM} with {some(unsupported)}. Put a spring in parallel."
-    yield from value_warnings(study, {name: results["value"].sel(index=name).values for name in study.indices})
+    for text in value_warnings(study, {name: results["value"].sel(index=name).values for name in study.indices}):
+        yield f"Warning: {text}"
 
 
 def value_warnings(study: Study, values: Mapping[str, ArrayLike]) -> Iterator[str]:
@@ -40,7 +41,7 @@ def value_warnings(study: Study, values: Mapping[str, ArrayLike]) -> Iterator[st
         largest = float(known[np.isfinite(known)].max(initial=0.0))  # of an infinite one the status tells the cause
         if kind is RideComfort and largest > STANDARD_GRAVITY:
             yield (
-                f"Warning: {name} reaches {format_quantity(largest, 'm/s^2')} r.m.s., more than the acceleration of "
+                f"{name} reaches {format_quantity(largest, 'm/s^2')} r.m.s., more than the acceleration of "
                 f"gravity, which no vehicle stands. Check the road's roughness and speed."
             )
         if kind is TyreLoad:
@@ -60,18 +61,19 @@ def _lift_off_warning(name: str, largest: float, study: Study) -> Iterator[str]:
     how = f"more than the static load of {limit}" if beyond else f"with a static load of {limit} in all"
     when = "the tyres would leave the road" if beyond else "a tyre leaves the road at times"
     yield (
-        f"Warning: {name} reaches {load} r.m.s., {how}: {when}, which the linear model ignores. Check the road's "
+        f"{name} reaches {load} r.m.s., {how}: {when}, which the linear model ignores. Check the road's "
         "roughness and speed."
     )
 
 
 def _static_loads(study: Study) -> list[tuple[float, float]]:
-    """Static load of each tyre [N] with its weight in J3; none if they are unknown."""
+    """Static load of each tyre [N] with its weight in J3; none if they are unknown, or not all that J3 is of."""
     try:
         design = study.design(next(iter(study.layouts)))
         free = {name: free.lower for name, free in design.free_values().items()}
         loads = static_tyre_loads(design.with_values(free))
     except InerterError:
         return []
-    weights = {output.output: output.weight for output in design.mechanism().tyre_loads}
-    return [(load, weights.get(f"{tyre}_load", 0.0)) for tyre, load in loads.items()]
+    weights = {output.output: abs(output.weight) for output in design.mechanism().tyre_loads}
+    known = {f"{tyre}_load": load for tyre, load in loads.items()}
+    return [(known[name], weight) for name, weight in weights.items()] if weights.keys() <= known.keys() else []

@@ -54,6 +54,16 @@ def test_a_study_and_its_results_give_the_same_design(folder: Path, capsys: pyte
     assert np.array_equal(one["A"], it.named_system(best.design, form="descriptor").A)
 
 
+@pytest.mark.parametrize("form", ["state-space", "descriptor"])
+def test_the_form_of_the_matrices_is_an_option(form: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["export", "real.toml", "--to", "matlab", "--linear"]
+    assert call([*arguments, "--form", form]) == 0
+    assert ("E" in scipy.io.loadmat(folder / "real-S3.mat")) == (form == "descriptor")
+    assert call([*arguments, "--form", "dss", "-o", "other.mat"]) == 2
+    assert 'Invalid value "dss" for --form. Choose from: "descriptor", "state-space".' in capsys.readouterr().err
+    assert not (folder / "other.mat").exists()
+
+
 def test_of_a_study_with_conditions_the_vehicle_is_that_of_the_file(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -231,6 +241,7 @@ def test_what_cannot_be_exported_is_one_sentence(
         (["--to", "fmu", "--speed", "20"], '--speed: Got "20": unit missing'),
         (["--to", "matlab", "--part", "strut"], "An export to matlab does not accept part: "),
         (["--to", "svg", "--linear"], "An export to svg does not accept linear: "),
+        (["--to", "csv", "--form", "descriptor"], "An export to csv does not accept form: "),
         (["--to", "spice", "--only", "tyre_load"], "An export to spice does not accept outputs: "),
     ],
 )

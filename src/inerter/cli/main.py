@@ -11,7 +11,7 @@ import sys
 from dataclasses import asdict
 from inspect import signature
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 from cyclopts import App, CycloptsError, Parameter
 
@@ -345,6 +345,7 @@ def rig(
 @app.command(
     help_epilogue="""Examples:
   inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
+  inerter export quarter-car-results --layout S3 --index J1 --to matlab --form state-space -o S3.m
   inerter export quarter-car-results --layout S3 --index J1 --to modelica
   inerter export my-car.toml --layout real --to spice --linear
   inerter export my-car.toml --to fmu --part strut
@@ -366,6 +367,12 @@ def export(
         tuple[str, ...],
         Parameter(negative="", show_default=False, help="Output of the linear model to export; repeatable."),
     ] = (),
+    form: Annotated[
+        Literal["descriptor", "state-space"] | None,
+        Parameter(
+            help="Form of the matrices for matlab: with unknowns that no mass carries and a matrix E, or without."
+        ),
+    ] = None,
     part: Annotated[str, Parameter(show_default=False, help="Strut to export alone: fmu, fmu3, spice, drawings.")] = "",
     speed: Annotated[
         str | None, Parameter(help='Speed of an FMU with one road for all axles, or of a simulation, such as "25 m/s".')
@@ -400,7 +407,7 @@ def export(
     """
     from inerter.cli.export import export as command
 
-    options = {"outputs": only or None, "part": part, "linear": linear, "platforms": platform}
+    options = {"outputs": only or None, "form": form or "", "part": part, "linear": linear, "platforms": platform}
     command(source, to, layout, index, point, condition, output, options, speed=speed, force=force)
 
 

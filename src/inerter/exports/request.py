@@ -61,10 +61,10 @@ class ExportSpec:
         value, default = getattr(self, option), getattr(ExportSpec, option)
         return type(value) is not type(default) or bool(value != default)
 
-    def system(self, form: str = "") -> NamedSystem:
-        """The linear model, in the form that was asked for, or else in `form`."""
+    def system(self, form: str = FORMS[0]) -> NamedSystem:
+        """The linear model, in the form that was asked for, or else in `form`; a `LinearSystem` is a state space."""
         of = self.of if isinstance(self.of, LinearSystem) else self._vehicle("a vehicle or a LinearSystem")
-        chosen = self.form or form or FORMS[0]
+        chosen = self.form or (FORMS[0] if isinstance(of, LinearSystem) else form)
         return named_system(of, self.inputs, self.outputs, linear=self.linear, form=chosen, title=self.title)
 
     @cached_property

@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from inerter.errors import ExportError
 from inerter.exports.kind import LINEAR_MODEL, ExportKind
-from inerter.exports.named_system import FORMS, NamedSystem
+from inerter.exports.named_system import NamedSystem
 from inerter.exports.request import ExportSpec
 from inerter.records.writers import write_record_matlab
-from inerter.systems.linear import LinearSystem
 
 Matrix = NDArray[np.float64]
 
@@ -28,7 +27,7 @@ def _make(request: ExportSpec, suffix: str) -> str | bytes:
         write_record_matlab(record, content)
         return content.getvalue()
     # A descriptor keeps digits far below all resonances that elimination of its unknowns would lose.
-    system = request.system(FORMS[0] if isinstance(request.of, LinearSystem) else FORMS[1])
+    system = request.system("descriptor")
     return matlab_script(system) if suffix == ".m" else matlab_file(system)
 
 

@@ -22,6 +22,7 @@ from inerter.norms.response import frequency_response, resonant_range
 from inerter.records.record import CHANNELS, Record
 from inerter.records.writers import write_record_table
 from inerter.simulation.trajectory import Trajectory
+from inerter.systems.assemble import state_space
 from inerter.systems.descriptor import close
 from inerter.systems.linear import check_names
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     import xarray
 
 Matrix = NDArray[np.float64]
+_AT_POLE = 1e-6  # of a frequency: nearer to a pole than this it is left out
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +58,11 @@ def responses_of(request: ExportSpec) -> ExportedResponses:
 
     Raises `ExportError` for a pole at one of the frequencies that were asked for.
     """
-    system = request.system()
+    system = request.system("descriptor")
     hertz = request.hertz
     if hertz is None:
-        hertz = resonant_range([system.A]) / (2.0 * np.pi)
+        dynamics = system.A if system.E is None else state_space(request.mechanism).A
+        hertz = _frequencies_off_poles(dynamics) / (2.0 * np.pi)
     omega = 2.0 * np.pi * hertz
     values = system.response(omega)
     if not np.all(np.isfinite(values)):
@@ -68,6 +71,13 @@ def responses_of(request: ExportSpec) -> ExportedResponses:
     for name, index in (request.indices or {}).items():
         found[name] = _index_gains(request, name, index, omega)
     return ExportedResponses(hertz, system, values, found)
+
+
+def _frequencies_off_poles(dynamics: Matrix) -> Matrix:
+    """Frequencies of `resonant_range` [rad/s], without those at an undamped pole, where no digit of a gain is left."""
+    omega, poles = resonant_range([dynamics]), np.linalg.eigvals(dynamics)
+    away = np.abs(1j * omega[:, None] - poles).min(axis=1, initial=np.inf)
+    return np.asarray(omega[away > _AT_POLE * omega])
 
 
 def _index_gains(request: ExportSpec, name: str, index: Index, omega: Matrix) -> tuple[tuple[str, ...], Matrix]:

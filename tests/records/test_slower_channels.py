@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from quick_fits import explained, quick_fit
 
 import inerter as it
+from inerter.identification.experiment import experiment_of
 from inerter.identification.models import MODELS
 from inerter.identification.statements.causes import Suspect
 from inerter.records.finding_texts import RecordFinding
@@ -143,6 +144,18 @@ def test_a_fit_names_the_slower_channel_also_where_noise_may_hide_it(way: str, c
     assert f"measured at one sample in 4 only, and {way}" in told[0].sentence
     solution = quick_fit(read, MODELS["ideal-viscous"], {"b": INERTANCE, "c": DAMPING})
     found, _ = explained(solution)
+    assert found[0].name is Suspect.SLOWER
+    assert found[0].explained > 0.9
+
+
+def test_a_fit_names_a_record_of_which_both_channels_were_interpolated() -> None:
+    """Noise of the encoder, of which a spline through the readings shows no floor, passed whole to the force."""
+    random, every, noise = np.random.default_rng(6), 3, 0.1
+    x, force = moved(0), INERTANCE * moved(2) + DAMPING * moved(1)
+    x, force = x + 1e-6 * random.standard_normal(SIZE), force + noise * random.standard_normal(SIZE)
+    read = it.Record(TIME, slower(x, "interpolated", every), slower(force, "interpolated", every))
+    assert experiment_of(read).noise == pytest.approx(noise, rel=0.25)
+    found, _ = explained(quick_fit(read, MODELS["ideal-viscous"], {"b": INERTANCE, "c": DAMPING}))
     assert found[0].name is Suspect.SLOWER
     assert found[0].explained > 0.9
 

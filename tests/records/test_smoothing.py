@@ -98,6 +98,7 @@ def test_noise_and_steps_that_are_known():
         values = np.round(rng.normal(0.0, 50 * step, 5000) / step) * step
         assert resolution(values) == pytest.approx(step, rel=1e-9)
         assert resolution(values + 1e3 * step + 0.3 * step) == pytest.approx(step, rel=1e-6)
+        assert resolution(values + 2e6 * step) == pytest.approx(step, rel=1e-6)  # such as 1 um, 2 m from the zero
     assert resolution(white) == 0.0
     assert resolution(np.ones(10)) == 0.0
 

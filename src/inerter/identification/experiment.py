@@ -15,6 +15,7 @@ from inerter.networks.elements.roles import GuardRole, LinearRole
 from inerter.records.dropouts import MAD
 from inerter.records.record import CHANNELS, Record
 from inerter.records.saturation import saturated_samples
+from inerter.records.slower_channels import slower_channel
 from inerter.records.smoothing import Motion, interpolate, quietest, resolution, smooth_displacement
 from inerter.signals.signal import Signal
 from inerter.simulation import event_driven
@@ -287,13 +288,15 @@ def _noise(record: Record) -> float:
     """R.m.s. noise of the force [N]: as stated, or from the quietest half-octave of its spectrum.
 
     Less where occasional impacts dominate that: sixth differences suppress the force, and their median suppresses rare
-    events.
+    events. Of a force that was read at a lower rate, that of the readings, between which there is hardly any.
     """
     if record.force_noise is not None:
         return record.force_noise
-    sixth = MAD * float(np.median(np.abs(np.diff(record.force, 6)))) / math.sqrt(math.comb(12, 6))
-    intermittent = max(sixth, resolution(record.force) / math.sqrt(12.0))
-    return max(min(quietest(record.force, record.interval), intermittent), 1e-9)
+    slower = slower_channel(record.force)
+    force, every = (record.force, 1.0) if slower is None else (slower.readings(record.force), slower.every)
+    sixth = MAD * float(np.median(np.abs(np.diff(force, 6)))) / math.sqrt(math.comb(12, 6))
+    intermittent = max(sixth, resolution(force) / math.sqrt(12.0))
+    return max(min(quietest(force, every * record.interval), intermittent), 1e-9)
 
 
 def _information(force: Matrix, kept: NDArray[np.bool_]) -> Matrix:

@@ -26,6 +26,7 @@ from inerter.records.record import Record
 from inerter.records.repair import faulty_instants, without_faulty_samples
 from inerter.records.saturation import is_flat
 from inerter.records.slower_channels import SlowerChannel, slower_channel
+from inerter.records.smoothing import bandwidth_of, noise_of
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -318,7 +319,8 @@ def faulty_samples(experiments: Sequence[Experiment]) -> list[Hypothesis]:
 def _at_readings(experiments: Sequence[Experiment]) -> Hypothesis | None:
     """Channels that were read at a lower rate, between whose readings nothing is compared; None without such a channel.
 
-    A spline goes through the readings of the displacement.
+    A spline goes through the readings of the displacement, and is smoothed to what they show: of the readings alone a
+    noise floor can be told.
     """
     whole: dict[int, Experiment] = {}
     read_at: dict[int, SlowerChannel] = {}
@@ -328,10 +330,11 @@ def _at_readings(experiments: Sequence[Experiment]) -> Hypothesis | None:
         moved, forced = slower_channel(record.displacement), slower_channel(record.force)
         channels += [(n, s.every, s.way) for n, s in (("displacement", moved), ("force", forced)) if s is not None]
         if moved is not None:
-            at = moved.positions(e.size)
-            read_off = CubicSpline(at, moved.readings(record.displacement))
-            through = read_off(np.clip(np.arange(e.size), at[0], at[-1]))
-            mended = experiment_of(record.with_notes(displacement=through), rigid=e.rigid)
+            at, readings = moved.positions(e.size), moved.readings(record.displacement)
+            through = CubicSpline(at, readings)(np.clip(np.arange(e.size), at[0], at[-1]))
+            every = moved.every * record.interval
+            bandwidth = e.motion.bandwidth if e.motion.asked else bandwidth_of(noise_of(readings, every), every)
+            mended = experiment_of(record.with_notes(displacement=through), bandwidth, rigid=e.rigid)
             whole[id(record)] = replace(mended, record=record, kept=e.kept, tally=e.tally)
         if forced is not None:
             read_at[id(record)] = forced

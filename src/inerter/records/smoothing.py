@@ -85,8 +85,7 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
         check_positive(RecordError, "A bandwidth", bandwidth, "Hz")
     interval = record.interval
     noise = noise_of(record.displacement, interval)
-    limit = HIGHEST / interval
-    chosen = min(MARGIN * noise.highest, limit) if bandwidth is None else float(bandwidth)
+    chosen = bandwidth_of(noise, interval) if bandwidth is None else float(bandwidth)
     displacement = low_pass(record.displacement, interval, chosen)
     velocity = interpolate(displacement, _spacing(record.time))[1]
     attenuation = 1.0 - float(gain(np.array([noise.highest]), interval, chosen)[0])
@@ -103,6 +102,11 @@ def smooth_displacement(record: Record, bandwidth: float | None = None) -> Motio
         acceleration_noise=noises[1],
         asked=bandwidth is not None,
     )
+
+
+def bandwidth_of(noise: Noise, interval: float) -> float:
+    """The default bandwidth of `smooth_displacement` [Hz], of a displacement with this noise floor."""
+    return min(MARGIN * noise.highest, HIGHEST / interval)
 
 
 def _uneven(record: Record) -> RecordError:
@@ -179,7 +183,7 @@ def resolution(values: Vector) -> float:
     0.01
     """
     levels = np.unique(values[:_LEVELS])
-    rounding = 1e-9 * float(np.max(np.abs(levels)))
+    rounding = 1e-12 * float(np.max(np.abs(levels)))
     steps = np.diff(levels)
     steps = steps[steps > 100.0 * rounding]
     if steps.size < 3:

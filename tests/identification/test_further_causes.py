@@ -95,6 +95,16 @@ def test_an_unstated_bandwidth_of_the_load_cell_is_named_first() -> None:
         assert first.estimates[name][0] == pytest.approx(truth, rel=0.01)
 
 
+def test_a_delay_is_no_difference_of_clocks_too() -> None:
+    """Clocks that differ by next to nothing, and began apart, explain the same; they were called equally likely."""
+    rig = it.VirtualRig(it.Inerter(33.0) | it.Friction(26.0), sampling=500.0, force_bandwidth=150.0, force_delay=5e-3)
+    record = rig.run(it.cosine(2e-3, 1.4), 2.0)
+    found, _ = explained(quick_fit(record, MODELS["friction"], {"b": 33.0, "f": 26.0}))
+    names = [cause.name for cause in found]
+    assert names[0] is Suspect.DELAY
+    assert Suspect.CLOCK_DRIFT not in names
+
+
 @pytest.mark.campaign
 def test_a_wrongly_stated_bandwidth_of_the_load_cell_is_named_first() -> None:
     """A clock that drifts, with a delay at first, explained more of it than another filter of the samples."""

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import coherence as coherence_of
 
 from inerter.errors import OK, Status, StatusKind
 from inerter.identification.diagnosis import explanations
@@ -35,6 +36,8 @@ from inerter.work.progress import report
 
 Matrix = NDArray[np.float64]
 ENOUGH = 0.985  # of the variance of the force: a model that explains less is not the device
+_RELATED = 0.5  # of the variance of the force: only where less is explained may the force be that of something else
+_PIECES, _CHANCE = 16, 1e-3  # of a record whose coherence is estimated, and probability of a larger one by chance
 _SATURATED = 0.2  # of the samples, above which a record is unreliable
 _ERRORS = 2.5  # standard errors to either side of an estimate under another hypothesis
 _FAIRLY = 1.15  # excess of a hypothesis that explains a misfit
@@ -102,9 +105,14 @@ def find_doubt(fit: Fit) -> Finding | None:
             return Finding(FitFinding.SCALES, Severity.WARNING, wrong.about, wrong.numbers)
     lost = sum(float(saturated_samples(c.record).mean()) for c in fit.comparisons) / len(fit.comparisons)
     best = _main_cause(fit)
+    if fit.variance_explained < _RELATED and all(map(_is_unrelated, fit.comparisons)):
+        return Finding(FitFinding.UNRELATED, Severity.WARNING)
     if fit.predicted < ENOUGH and best is None:
-        changed = 100.0 * min(1.0 - fit.predicted, 1.0)
-        return Finding(FitFinding.UNPREDICTABLE, Severity.WARNING, numbers={"changed": changed})
+        numbers = {
+            "changed": 100.0 * min(1.0 - fit.predicted, 1.0),
+            "rattles": any(any(c.openings.values()) for c in fit.comparisons),
+        }
+        return Finding(FitFinding.UNPREDICTABLE, Severity.WARNING, numbers=numbers)
     if fit.misfit.is_noise_limited and best is not None:
         return Finding(FitFinding.SUSPECTED, Severity.WARNING, numbers={"likeliest": best})
     if not fit.misfit.is_noise_limited or fit.variance_explained < ENOUGH:
@@ -112,6 +120,23 @@ def find_doubt(fit: Fit) -> Finding | None:
     if lost > _SATURATED:
         return Finding(FitFinding.SATURATED, Severity.WARNING, numbers={"share": lost})
     return None
+
+
+def _is_unrelated(c: RecordFit) -> bool:
+    """Whether the force is neither coherent with the displacement at any frequency, nor a sum of what the motion does.
+
+    Coherence has a known distribution by chance (Carter 1987), but needs many periods.
+    """
+    motion, force, length = c.experiment.motion, c.record.force, c.record.time.size // _PIECES
+    if length < _PIECES:
+        return False
+    coherence = coherence_of(c.record.displacement, force, nperseg=length, noverlap=0)[1][1:]
+    by_chance = 1.0 - (_CHANCE / coherence.size) ** (1.0 / (_PIECES - 1))
+    velocity = motion.velocity
+    columns = np.column_stack([motion.displacement, velocity, motion.acceleration, np.sign(velocity)])
+    columns = np.column_stack([columns / np.abs(columns).max(axis=0), np.ones(force.size)])
+    left = force - columns @ np.linalg.lstsq(columns, force)[0]
+    return bool(np.nanmax(coherence) < by_chance and np.var(left) > _RELATED * np.var(force))
 
 
 def _main_cause(fit: Fit) -> Explanation | None:

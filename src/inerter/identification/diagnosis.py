@@ -179,6 +179,9 @@ def _rank(every: Sequence[Explanation], hidden: HiddenCause) -> list[Explanation
         if e.name not in found or e.explained > found[e.name].explained:
             found[e.name] = e
     ranked = sorted(found.values(), key=_likelihood)
+    names = [e.name for e in ranked]
+    # Clocks that differ may have begun apart: they are no other cause than a delay that explains as much.
+    ranked = [e for i, e in enumerate(ranked) if e.name is not Suspect.CLOCK_DRIFT or Suspect.DELAY not in names[:i]]
     if hidden is HiddenCause.NONE or not ranked:
         return ranked
     if ranked[0].name is Suspect.FILTERED_FORCE:  # in place of a delay: intervals contain its values already

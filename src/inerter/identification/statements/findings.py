@@ -35,6 +35,14 @@ def _trial_text(f: Finding) -> str:
     )
 
 
+def _unpredictable_text(f: Finding) -> str:
+    better = "motion with less rattling" if f.numbers["rattles"] else "larger motion"
+    return (
+        f"the force is too sensitive to encoder noise ({format_number(f.numbers['changed'], 3)} % change) to identify "
+        f"any parameter; record a {better}"
+    )
+
+
 def _saturation_text(f: Finding) -> str:
     share = format_share(f.numbers["share"], 2)
     return f"the load cell was saturated in {share} of the samples; reduce the motion"
@@ -173,12 +181,11 @@ class FitFinding(FindingKind):
     """The kinds of findings in an identification."""
 
     # unreliable estimates
-    UNPREDICTABLE = (
-        "unpredictable",
-        lambda f: (
-            f"the force is too sensitive to encoder noise ({format_number(f.numbers['changed'], 3)} % change) to "
-            f"identify any parameter; record a motion with less rattling"
-        ),
+    UNPREDICTABLE = "unpredictable", _unpredictable_text
+    UNRELATED = (
+        "unrelated",
+        "the force follows the displacement at no frequency; check that both channels are those of this device and of "
+        "the same run, and that the device moves",
     )
     SUSPECTED = "suspected", lambda f: f.numbers["likeliest"].sentence
     MISFIT = "misfit", _misfit_text

@@ -113,6 +113,22 @@ def test_replaced_samples_are_delayed_like_all_others(fault: Suspect) -> None:
     assert np.std(late[middle] - prompt[855:895]) < 0.1 * np.std(late[middle] - prompt[middle])
 
 
+@pytest.mark.parametrize("place", [700, 1111])
+def test_a_slip_of_the_encoder_is_closed_where_it_is(place: int) -> None:
+    """An extrapolation over one sample beyond a step is 19/16 of it: the joint was placed beside it, and not closed."""
+    record, true = rigid_record(duration=2.0)
+    slipped = replace(record, displacement=record.displacement + 3e-4 * (np.arange(record.time.size) > place))
+    experiment = experiment_of(slipped, rigid=True)
+    (suspect,) = faulty_samples([experiment])
+    assert suspect.name is Suspect.JOINED
+    mended = suspect.change_motion(experiment, {}).motion
+    assert mended.bandwidth < 2.0 * experiment_of(record, rigid=True).motion.bandwidth
+    inner = slice(100, -100)
+    left = mended.displacement - true["x"]
+    assert np.ptp(left[inner]) < 8e-6
+    assert np.std((mended.acceleration - true["a"])[inner]) < 0.05 * np.std(true["a"])
+
+
 @pytest.mark.campaign
 def test_faulty_samples_of_a_channel_at_a_lower_rate_are_interpolated_at_the_rate_of_the_record() -> None:
     """A record at the readings alone has fewer samples than the forces that it is compared with."""

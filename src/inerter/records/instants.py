@@ -200,12 +200,14 @@ def joint_instants(record: Record, excused: Mask) -> list[Instant]:
     size = np.where(_dilate(excused, 8)[3 : 3 + jump.size], 0.0, np.abs(jump))
     noise = max(MAD * float(np.median(np.abs(jump))), resolution(z))
     found: list[Instant] = []
-    rest = size.copy()
+    rest, kink = size.copy(), np.abs(np.convolve(np.diff(z), [-0.5, 1.0, -0.5], "same"))[3:-3]
     for _ in range(_MOST_JOINTS):
         at = int(np.argmax(rest))
         if rest[at] <= _JOINT * noise:
             break
-        found.append(Instant(at + 3, at + 5, float(jump[at])))
+        near = slice(max(at - 1, 0), at + 2)  # beside a step, extrapolations differ by 19/16 of it
+        last = near.start + int(np.argmax(kink[near])) + 3
+        found.append(Instant(last, last + 2, float(jump[last - 3])))
         rest[max(at - 8, 0) : at + 9] = 0.0
     others = float(rest.max())
     return sorted(

@@ -9,6 +9,7 @@ from wang_su import J1, paper_quarter_car
 
 import inerter as it
 from inerter import Damper, ExpectedValue, Friction, Gap, Inerter, LoadCarrying, Norm, Spring, free
+from inerter.errors import StatusKind
 from inerter.optimisation.constrained_search import ConstrainedProblem, trust_region
 from inerter.optimisation.local import LocalOptimum, descend
 from inerter.work.progress import ProgressStep, receiving_steps
@@ -87,6 +88,21 @@ def test_by_the_norm_there_is_nothing_over_linear():
     assert it.optimise(paper_quarter_car(k | c), J1, Norm()).gain_over_linear is None
     best = it.optimise(paper_quarter_car(k | c), J1, it.StatisticalLinearisation())
     assert best.gain_over_linear.difference.value == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_gain_over_a_linear_design_that_breaks_the_limits_is_not_ok():
+    """Dampers up to 600 N s/m do not keep the travel that friction keeps."""
+    car = paper_quarter_car(k | Damper(free(100.0, 600.0, "c")) | Friction(60.0))
+    travel, method = it.SuspensionTravel(J1.road), it.StatisticalLinearisation()
+    stiffest = car.with_values({"c": 600.0})
+    least = it.evaluate(stiffest, travel, Norm()).value
+    limit = it.at_most(travel, 0.5 * (least + it.evaluate(stiffest, travel, method).value))
+    assert limit.value < 0.97 * least
+    best = it.optimise(car, J1, method, subject_to=[limit])
+    assert best.status.kind is not StatusKind.INFEASIBLE
+    assert best.limits[0].value <= limit.value * (1.0 + 1e-7)
+    assert best.gain_over_linear.second.status.kind is StatusKind.INFEASIBLE
+    assert best.gain_over_linear.status.message.startswith("best linear design: no feasible design")
 
 
 class Bowl:

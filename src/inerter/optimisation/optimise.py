@@ -13,7 +13,7 @@ import scipy
 from numpy.typing import NDArray
 
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import OK, DesignError, InerterError, Status, StatusKind
+from inerter.errors import OK, DesignError, InerterError, Status, StatusKind, worst_of
 from inerter.formatting import format_alike, format_quantity, typeset
 from inerter.methods.compare import Comparison, Known, compare
 from inerter.methods.compiled_norm import CompiledNorm
@@ -69,8 +69,9 @@ class Optimum:
     violation.
 
     `gain_over_linear`, for methods other than `Norm`: comparison of the optimum with the best linear design, by the
-    same method on the same roads (a negative difference is an improvement); None where linear analysis does not
-    determine all values.
+    same method on the same roads (a negative difference is an improvement); its status is not ok where the search for
+    that linear design is doubtful or found none within the limits. None where linear analysis does not determine all
+    values.
 
     >>> import inerter as it
     >>> car = it.QuarterCar(250.0, 35.0, 180e3, it.Spring(60e3) | it.Damper(it.free(100, 1e5, name="c")))
@@ -212,7 +213,7 @@ def _best(
         found, first, evaluations, lowest = _search_widely(problem, search, starts, seed)
         lowest_known = min((local.value for local in found if local.excess <= KEPT), default=np.inf)
     else:
-        first = [] if linear is None else [linear]
+        first = [] if linear is None else [_point_of(linear)]
         with within("quick approximation", 0.5 * _QUICK, _QUICK):
             near, lowest = _quick_optima(vehicle, index, method, limits, (lower, upper), starts, seed)
             first += [local.point for local in near]
@@ -235,11 +236,11 @@ def _best(
     design = vehicle.with_values(parameters)
     over_linear = None
     if linear is not None:
-        best_linear = vehicle.with_values(dict(zip(free, linear.tolist(), strict=True)))
         known: Known = (None, None)
         if isinstance(objective, SampledObjective):
-            known = objective.estimate_at(point, method.estimate), objective.estimate_at(linear, method.estimate)
-        over_linear = compare(design, best_linear, index, method, known=known)
+            at_linear = _point_of(linear)
+            known = objective.estimate_at(point, method.estimate), objective.estimate_at(at_linear, method.estimate)
+        over_linear = _with_doubt(compare(design, linear.design, index, method, known=known), linear.status)
     held = constraint_results(
         problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value)
     )
@@ -360,14 +361,25 @@ def _closest_design(problem: ConstrainedProblem, first: list[Array]) -> LocalOpt
 
 def _linear_optimum(
     vehicle: Vehicle, index: IndexLike, method: Method, limits: tuple[Limit, ...], seed: int, starts: int
-) -> Array | None:
+) -> Optimum | None:
     """The best linear design under the conventions of `method`; None if not determined by linear analysis."""
     norm = Norm(getattr(method, "conventions", "exact"))
     try:
         found = optimise(vehicle, index, norm, subject_to=limits, seed=seed, starts=starts)
     except InerterError:
         return None
-    return np.array(list(found.parameters.values())) if np.isfinite(found.value) else None
+    return found if np.isfinite(found.value) else None
+
+
+def _point_of(found: Optimum) -> Array:
+    return np.array(list(found.parameters.values()))
+
+
+def _with_doubt(over_linear: Comparison, searched: Status) -> Comparison:
+    """The comparison with a linear design that is the best one only if the status of its search is ok."""
+    doubt = replace(searched, message=f"best linear design: {searched.message}") if not searched.ok else searched
+    second = over_linear.second
+    return replace(over_linear, second=replace(second, status=worst_of((second.status, doubt))))
 
 
 def _quick_optima(

@@ -270,7 +270,7 @@ def _search_fields(found: Optimum | None) -> dict[str, Any]:
         "starts": found.n_starts,
         "agreed": found.n_converged,
         "evaluations": found.evaluations,
-        "over_linear": None if over is None else (-over.percent, over.percent_error),
+        "over_linear": (-over.percent, over.percent_error) if over is not None and over.second.status.ok else None,
     }
 
 

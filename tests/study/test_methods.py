@@ -134,7 +134,8 @@ def test_other_indices_of_a_design_have_standard_errors_of_their_own(study: Stud
     (load,) = next(one for one in study_decision(found, "J1", asked).designs if one.name == "serial").others
     assert load.improvement is not None
     base = found.other_value.sel(layout="usual", index="J1", other="J3").item()
-    assert load.improvement.error == pytest.approx(100.0 * np.hypot(*errors.values()) / base)
+    of_ratio = np.hypot(errors["serial"], errors["usual"] * load.value / base) / base  # to first order
+    assert load.improvement.error == pytest.approx(100.0 * of_ratio)
 
 
 def test_improvements_are_those_of_a_comparison(result: StudyResult) -> None:

@@ -13,7 +13,7 @@ from inerter.app.designs import Design, baseline_of, describe_index, designs_of,
 from inerter.app.documents import study_from
 from inerter.app.index_values import estimate_index, limits_at
 from inerter.app.kinds import Tell, report_nothing
-from inerter.decision.results import Improvement, is_doubtful, possibly_least
+from inerter.decision.results import Improvement, improvement_of, is_doubtful, possibly_least
 from inerter.errors import DesignError
 from inerter.files.common.layouts import LayoutCodec
 from inerter.files.study.parts import FAILURES
@@ -21,7 +21,6 @@ from inerter.files.study.place import element_at, place_of
 from inerter.files.study.study import Study, elements_used
 from inerter.formatting import format_quantity, shown_decimals
 from inerter.methods.compare import Comparison, compare
-from inerter.methods.error_bounds import improvement_bound
 from inerter.methods.method import Estimate
 from inerter.validation import number_or_none
 
@@ -196,14 +195,3 @@ def describe_estimate(estimate: Estimate, by: Improvement | None) -> Answer:
         "improvement_status": None if by is None else by.status.kind.value,
         "tie": None if by is None else by.is_equal,
     }
-
-
-def improvement_of(two: Comparison | None) -> Improvement | None:
-    """Improvement of the first design over the second, in per cent of its value; None without a comparison."""
-    if two is None:
-        return None
-    one, other = two.first, two.second
-    errors = one.error_bound, other.error_bound, one.shared_errors, other.shared_errors
-    bound = improvement_bound(one.value, other.value, *errors)
-    error = np.nan if two.first.standard_error is None else two.percent_error
-    return Improvement(-two.percent, error, bound, two.is_tie, two.status)

@@ -5,24 +5,24 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from math import isfinite, nan
+from math import nan
 from typing import Any
 
-from inerter.app.comparing import DesignEstimate, describe_estimate, describe_result, evaluate_design, improvement_of
+from inerter.app.comparing import DesignEstimate, describe_estimate, describe_result, evaluate_design
 from inerter.app.designs import Design, baseline_of, describe_index, designs_of, one_design, problem_digest
 from inerter.app.index_values import DesignLimit, limits_at
 from inerter.app.kinds import Tell, report_nothing
 from inerter.app.wire import typeset_sentences
-from inerter.decision.decide import decide
-from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements, remedy_of
+from inerter.decision.decide import decide_by_comparison
+from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements
 from inerter.decision.results import DesignResult, Improvement, IndexResult
 from inerter.files.study.conditions import condition_labels
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, printed_text
-from inerter.methods.compare import compare_estimates
+from inerter.methods.compare import Comparison, compare_estimates
 from inerter.methods.method import Estimate
-from inerter.methods.registry import brief_words_of, with_decisive_method
+from inerter.methods.registry import with_decisive_method
 from inerter.report.plausibility import value_warnings
 from inerter.tasks.margins import MarginCaveat, MarginRequest, Margins
 from inerter.tasks.margins import margins as find_margins
@@ -46,13 +46,13 @@ def decision(study: Study, body: Body) -> Answer:
     indices = list(body.get("indices") or study.indices)
     goal = body.get("index") or indices[0]
     compared = _DesignComparison(study, method, baseline, (goal, *(index for index in indices if index != goal)))
-    results = [compared.result(design) for design in designs]
+    results = [compared.add(design) for design in designs]
     left_out = body.get("left_out") or ()
-    told = decide(
+    told = decide_by_comparison(
         results,
-        compared.over,
-        method=brief_words_of(method),
-        remedy=remedy_of(method),
+        compared.compare,
+        method,
+        _condition_names(study),
         left_out=[one["layout"] for one in left_out],
         left_out_baseline=next((one["layout"] for one in left_out if one["is_baseline"]), ""),
     )
@@ -64,7 +64,7 @@ def decision(study: Study, body: Body) -> Answer:
             "sentence": printed_text(goal_sentence(study, goal, method)),
         },
         "method": method,
-        "rows": [compared.row(rank, result) for rank, result in zip(told.ranks, told.designs, strict=True)],
+        "rows": [compared.row(*ranked) for ranked in zip(told.ranks, told.order, told.designs, strict=True)],
         "verdict": typeset_sentences(verdict),
     }
 
@@ -114,24 +114,23 @@ class _DesignComparison:
 
     def __init__(self, study: Study, method: str, baseline: Design | None, indices: Sequence[str]) -> None:
         self.study, self.method, self.baseline, self.indices = study, method, baseline, indices
-        self._base = [] if baseline is None else [evaluate_design(baseline, index, method) for index in indices]
-        self._known: dict[int, tuple[Design, list[DesignEstimate], list[DesignLimit]]] = {}
+        self._base = {} if baseline is None else self._estimates(baseline)
+        self._known: list[tuple[Design, dict[str, DesignEstimate], list[DesignLimit]]] = []
 
-    def result(self, design: Design) -> DesignResult:
-        """Results of a design; the same object identifies it in `over` and `row`."""
-        found = [evaluate_design(design, index, self.method) for index in self.indices]
+    def _estimates(self, design: Design) -> dict[str, DesignEstimate]:
+        return {index: evaluate_design(design, index, self.method) for index in self.indices}
+
+    def add(self, design: Design) -> DesignResult:
+        """Results of a design, whose number in `compare` and `row` is that of the designs before it."""
+        found = self._base if design is self.baseline else self._estimates(design)
         limits = limits_at(self.study, design, self.method)
-        goal, *others = [self._index_result(one, i) for i, one in enumerate(found)]
+        self._known.append((design, found, limits))
+        goal, *others = map(self._index_result, found.values())
         modelled, neglected = nonlinear_elements(design.mechanism, self.method)
-        made = DesignResult(
+        return DesignResult(
             name=design.name,
             goal=goal,
             others=tuple(others),
-            in_conditions=tuple(
-                (name, by)
-                for name, _, _, by in self._in_conditions(found[0])
-                if by is not None and isfinite(by.percent)
-            ),
             limits=tuple(one.result() for one in limits),
             unchosen=design.unchosen,
             at_bounds=tuple(at_bounds(design.free, design.values, self.study.free_units)),
@@ -140,33 +139,24 @@ class _DesignComparison:
             is_baseline=design is self.baseline,
             n_elements=len(design.mechanism.strut_elements()),
         )
-        self._known[id(made)] = design, found, limits
-        return made
 
-    def _in_conditions(self, one: DesignEstimate) -> Iterator[tuple[str, float, Estimate, Improvement | None]]:
-        """Name, share (nan if none counts), goal and improvement over the baseline in each of several conditions."""
-        base = self._base[0] if self._base else None
-        is_compared = base is not None and one.design is not self.baseline and one.beside(base) is not None
-        conditions, own = self.study.conditions, one.estimate.in_conditions
-        if len(conditions) < 2 or not own:
-            return
-        whole = sum(condition.share for condition in conditions) if self.study.over == OVER[0] else nan
-        others = base.estimate.in_conditions if base is not None and is_compared else [None] * len(own)
-        each = zip(condition_labels(conditions), conditions, own, others, strict=True)
-        for name, condition, estimate, other in each:
-            by = None if other is None else improvement_of(compare_estimates(estimate, other))
-            yield name, condition.share / whole, estimate, by
+    def _index_result(self, one: DesignEstimate) -> IndexResult:
+        result = IndexResult.of(one.index, self.study.index(one.index).title, one.estimate)
+        return replace(result, status=with_decisive_method(result.status, self.method))
 
-    def over(self, one: DesignResult, other: DesignResult) -> Improvement | None:
-        """Improvement of a design over another in the goal, on the same roads."""
-        first, second = (self._known[id(each)][1][0] for each in (one, other))
-        return improvement_of(first.beside(second))
+    def compare(self, first: int, second: int, index: str, condition: int | None) -> Comparison | None:
+        """Comparison of two designs in an index, on the same roads."""
+        one, other = (self._known[i][1][index] for i in (first, second))
+        two = one.beside(other)
+        if condition is None or two is None:
+            return two
+        own, others = one.estimate.in_conditions, other.estimate.in_conditions
+        return compare_estimates(own[condition], others[condition]) if own and others else None
 
-    def row(self, rank: int | None, result: DesignResult) -> Answer:
+    def row(self, rank: int | None, number: int, result: DesignResult) -> Answer:
         """Row of the ranking, for an answer."""
-        design, found, limits = self._known[id(result)]
-        base: Sequence[DesignEstimate | None] = self._base or [None] * len(found)
-        told = [describe_result(one, other) for one, other in zip(found, base, strict=True)]
+        design, found, limits = self._known[number]
+        told = [describe_result(one, self._base.get(index)) for index, one in found.items()]
         keys = (*_OTHER, *_COMPARED)
         return {
             "layout": design.layout,
@@ -178,23 +168,19 @@ class _DesignComparison:
             "is_baseline": result.is_baseline,
             "others": [{key: one[key] for key in keys} for one in told[1:]],
             "limits": [one.to_json() for one in limits],
-            "in_conditions": [
-                {"name": name, "share": number_or_none(share), **describe_estimate(estimate, by)}
-                for name, share, estimate, by in self._in_conditions(found[0])
-            ],
+            "in_conditions": list(self._in_conditions(found[self.indices[0]].estimate, dict(result.in_conditions))),
         }
 
-    def _index_result(self, one: DesignEstimate, i: int) -> IndexResult:
-        estimate, study = one.estimate, self.study
-        base = self._base[i] if self._base else None
-        two = None if base is None or one.design is self.baseline else one.beside(base)
-        return IndexResult(
-            index=one.index,
-            title=study.index(one.index).title,
-            unit=study.unit(one.index),
-            value=estimate.value,
-            status=with_decisive_method(estimate.status, self.method),
-            standard_error=estimate.quantity.error,
-            error_bound=estimate.error_bound,
-            improvement=improvement_of(two),
-        )
+    def _in_conditions(self, goal: Estimate, improvements: Mapping[str, Improvement]) -> Iterator[Answer]:
+        """Name, share (null if none counts), goal and improvement over the baseline in each of several conditions."""
+        conditions = self.study.conditions
+        whole = sum(condition.share for condition in conditions) if self.study.over == OVER[0] else nan
+        names = _condition_names(self.study)
+        for name, condition, estimate in zip(names, conditions, goal.in_conditions, strict=False):
+            share = number_or_none(condition.share / whole)
+            yield {"name": name, "share": share, **describe_estimate(estimate, improvements.get(name))}
+
+
+def _condition_names(study: Study) -> list[str]:
+    """Names of the conditions; none unless there are several."""
+    return condition_labels(study.conditions) if len(study.conditions) > 1 else []

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 from typing import Any
 
 from inerter.decision.caveats import Caveat, Contest, Over, caveats_of, unchosen_clause, unknown_limits
-from inerter.decision.results import DesignResult, Improvement, possibly_least
+from inerter.decision.of_study import remedy_of
+from inerter.decision.results import DesignResult, Improvement, improvement_of, possibly_least
 from inerter.formatting import capital, format_list
+from inerter.methods.compare import Comparison
+from inerter.methods.registry import brief_words_of
 from inerter.statements import Severity, Statement
+
+# of two designs by their numbers, in an index, in the goal also in the condition of a number; None if there is none
+Compare = Callable[[int, int, str, int | None], Comparison | None]
 
 
 class VerdictKind(StrEnum):
@@ -52,13 +58,55 @@ class DecisionVerdict(Statement):
 class Decision:
     """Designs in their order, the rank of each (None if it is not ranked), the winners, and the verdict.
 
-    Designs that are equally good as the best one share rank 1.
+    Designs that are equally good as the best one share rank 1. `order` has the numbers of the designs as they were
+    given.
     """
 
     designs: tuple[DesignResult, ...]
+    order: tuple[int, ...]
     ranks: tuple[int | None, ...]
     winners: tuple[DesignResult, ...]
     verdict: DecisionVerdict
+
+
+def decide_by_comparison(
+    designs: Sequence[DesignResult],
+    compare: Compare,
+    method: str,
+    conditions: Sequence[str] = (),
+    left_out: Sequence[str] = (),
+    left_out_baseline: str = "",
+) -> Decision:
+    """Decision on designs by the values of a method, with improvements over the baseline, and those in `conditions`.
+
+    `compare` gives the comparison of two designs by their numbers.
+    """
+    base = next((i for i, one in enumerate(designs) if one.is_baseline), None)
+
+    def by(i: int, index: str, condition: int | None = None) -> Improvement | None:
+        found = None if base is None or i == base else improvement_of(compare(i, base, index, condition))
+        return found if found is not None and isfinite(found.percent) else None
+
+    results = [
+        replace(
+            one,
+            goal=replace(one.goal, improvement=by(i, one.goal.index)),
+            others=tuple(replace(other, improvement=by(i, other.index)) for other in one.others),
+            in_conditions=tuple(
+                (name, found) for c, name in enumerate(conditions) if (found := by(i, one.goal.index, c)) is not None
+            ),
+        )
+        for i, one in enumerate(designs)
+    ]
+    number = {id(one): i for i, one in enumerate(results)}
+    return decide(
+        results,
+        lambda one, other: improvement_of(compare(number[id(one)], number[id(other)], one.goal.index, None)),
+        method=brief_words_of(method) if method else "",
+        remedy=remedy_of(method) if method else "",
+        left_out=left_out,
+        left_out_baseline=left_out_baseline,
+    )
 
 
 def decide(
@@ -83,7 +131,9 @@ def decide(
     others = sorted((one for one in designs if one not in ranked), key=_order)
     contest = Contest(designs, winners, over, method, remedy, left_out, left_out_baseline)
     ranks = [*[1] * len(winners), *range(len(winners) + 1, len(ranked) + 1), *[None] * len(others)]
-    return Decision((*winners, *rest, *others), tuple(ranks), tuple(winners), _verdict(contest, rest))
+    ordered, places = (*winners, *rest, *others), {id(one): place for place, one in enumerate(designs)}
+    order = tuple(places[id(one)] for one in ordered)
+    return Decision(ordered, order, tuple(ranks), tuple(winners), _verdict(contest, rest))
 
 
 def _winners(designs: Sequence[DesignResult], ranked: Sequence[DesignResult], over: Over) -> list[DesignResult]:

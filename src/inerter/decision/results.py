@@ -10,6 +10,9 @@ from inerter.errors import OK, Status, StatusKind
 from inerter.figures.labels import NOTICEABLE
 from inerter.formatting import capital, format_percent_size, format_quantity
 from inerter.indices.names import title_with_name
+from inerter.methods.compare import Comparison
+from inerter.methods.error_bounds import improvement_bound
+from inerter.methods.method import Estimate
 from inerter.methods.ties import equally_least
 
 _LARGE_ERRORS = "errors as large as the values"
@@ -51,6 +54,17 @@ class Improvement:
         return f"as good as {other}{f' within {_LARGE_ERRORS}' if self.bound == inf else ''}"
 
 
+def improvement_of(two: Comparison | None) -> Improvement | None:
+    """Improvement of the first design over the second, in per cent of its value; None without a comparison."""
+    if two is None:
+        return None
+    one, other = two.first, two.second
+    errors = one.error_bound, other.error_bound, one.shared_errors, other.shared_errors
+    bound = improvement_bound(one.value, other.value, *errors)
+    error = nan if one.standard_error is None else two.percent_error
+    return Improvement(-two.percent, error, bound, two.is_tie, two.status)
+
+
 def possibly_least(values: Sequence[float], over: Callable[[int, int], Improvement | None]) -> list[int]:
     """Numbers of the values that cannot be told from the lowest one, in their order; none that is not finite.
 
@@ -82,6 +96,12 @@ class IndexResult:
     standard_error: float = nan
     error_bound: float = nan
     improvement: Improvement | None = None
+
+    @classmethod
+    def of(cls, index: str, title: str, estimate: Estimate) -> IndexResult:
+        """Result of an estimate, not yet compared."""
+        error, bound = estimate.quantity.error, estimate.error_bound
+        return cls(index, title, estimate.unit, estimate.value, estimate.status, error, bound)
 
     @property
     def words(self) -> str:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
-from functools import partial
-from math import hypot, isfinite, isnan, nan
+from math import hypot, isfinite, isnan
 from typing import TYPE_CHECKING
 
 from inerter.decision.caveats import CaveatKind
-from inerter.decision.decide import Decision, decide
-from inerter.decision.of_study import decisive_method, nonlinear_elements, remedy_of
-from inerter.decision.results import AtBound, DesignResult, Improvement, IndexResult
-from inerter.errors import Status, StatusKind
+from inerter.decision.decide import Decision, decide_by_comparison
+from inerter.decision.of_study import decisive_method, nonlinear_elements
+from inerter.decision.results import AtBound, DesignResult, IndexResult
+from inerter.errors import OK, ErrorSource, Status, StatusKind
 from inerter.figures.labels import (
     bound_of,
     by_method,
@@ -29,16 +28,16 @@ from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, format_quantity
 from inerter.methods.averages import interval_of
-from inerter.methods.error_bounds import improvement_bound
-from inerter.methods.registry import brief_words_of, with_decisive_method
-from inerter.methods.ties import ACCURACY, percent_below
+from inerter.methods.compare import Comparison, Difference, compare_estimates
+from inerter.methods.error_bounds import ROUNDING
+from inerter.methods.method import Estimate
+from inerter.methods.registry import with_decisive_method
 from inerter.report.conditions import condition_names, in_condition
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _STATIC = "the static limit, which no damper or inerter lowers"
-_TWO_SIDED = 2.0  # standard errors of a difference that is not significant
 _DIMS = ("layout", "parameter", "other", ROAD_ERROR)  # of what a decision compares
 _ELSEWHERE = (CaveatKind.LIMIT, CaveatKind.NEGLECTED)  # said once for all indices, in the sentence on limits and notes
 
@@ -56,7 +55,7 @@ def verdict_sentences(
 
 def best_layouts(results: xr.Dataset, index: str) -> list[str]:
     """All layouts that may have the least value of `index` by the first method, the simplest first."""
-    return [one.name for one in _winners(one_method(results), index)]
+    return [one.name for one in study_decision(one_method(results), index).winners]
 
 
 def _sentences(
@@ -78,33 +77,39 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
     method = decisive_method(methods(results)) if methods(results) else ""
     one = by_method(results, method) if method else results
     row = _row(one, index)
-    each = {name: _row(in_condition(one, i), index) for i, name in enumerate(condition_names(one))}
-    designs = []
+    conditions = condition_names(one)
+    each = [_row(in_condition(one, i), index) for i in range(len(conditions))]
+    others = [other for other in _others(row) if other != index]
+    estimates, designs = [], []
     for name in layouts(results):
+        design = row.sel(layout=name)
+        own = {index: _estimate(design, index_unit(results, index), status=_status(results, design, method))}
+        for other in others:
+            own[other] = _estimate(design.sel(other=other), index_unit(results, other), "other")
+        estimates.append(own)
+        goal, *rest = (IndexResult.of(of, index_title(results, of), estimate) for of, estimate in own.items())
         mechanism = study.design(name).mechanism() if study is not None and method else None
-        modelled, neglected = nonlinear_elements(mechanism, method) if mechanism is not None else ((), ())
+        modelled, neglected = ((), ()) if mechanism is None else nonlinear_elements(mechanism, method)
         designs.append(
-            replace(
-                _design(results, row, index, name, method),
-                others=tuple(_others(results, row, index, name)),
-                in_conditions=tuple(_in_conditions(each, name)),
-                at_bounds=tuple(_at_bounds(row.sel(layout=name))),
+            DesignResult(
+                name=name,
+                goal=goal,
+                others=tuple(rest),
+                at_bounds=tuple(_at_bounds(design)),
                 modelled=modelled,
                 neglected=neglected,
+                is_baseline=name == row.attrs["baseline"],
+                n_elements=int(design["elements"]) if "elements" in design.coords else 0,
             )
         )
-    return decide(
-        designs,
-        partial(_over, row),
-        method=brief_words_of(method) if method else "",
-        remedy=remedy_of(method) if method else "",
-    )
 
+    def compare(first: int, second: int, of: str, condition: int | None) -> Comparison | None:
+        if of != index:
+            return compare_estimates(estimates[first][of], estimates[second][of])
+        here = row if condition is None else each[condition]
+        return _comparison(here, index_unit(results, index), designs[first].name, designs[second].name)
 
-def _winners(results: xr.Dataset, index: str) -> Sequence[DesignResult]:
-    """Best designs for an index, of results by one method."""
-    row, names = _row(results, index), results["layout"].values.tolist()
-    return decide([_design(results, row, index, name) for name in names], partial(_over, row)).winners
+    return decide_by_comparison(designs, compare, method, conditions)
 
 
 def _row(results: xr.Dataset, index: str) -> xr.Dataset:
@@ -114,35 +119,12 @@ def _row(results: xr.Dataset, index: str) -> xr.Dataset:
     return row.drop_dims([name for name in row.dims if name not in _DIMS])
 
 
-def _in_conditions(each: Mapping[str, xr.Dataset], layout: str) -> Iterator[tuple[str, Improvement]]:
-    """Improvement over the baseline in each condition where both have a value."""
-    for name, row in each.items():
-        baseline = row.attrs["baseline"]
-        if baseline and layout != baseline:
-            by = _improvement(row, row.sel(layout=layout), row.sel(layout=baseline))
-            if by is not None:
-                yield name, by
-
-
-def _design(results: xr.Dataset, row: xr.Dataset, index: str, layout: str, method: str = "") -> DesignResult:
-    """Best design of a layout for an index, with its value and its improvement over the baseline."""
-    design, baseline = row.sel(layout=layout), row.attrs["baseline"]
-    is_compared = baseline and layout != baseline
-    return DesignResult(
-        name=layout,
-        goal=IndexResult(
-            index=index,
-            title=index_title(results, index),
-            unit=index_unit(results, index),
-            value=float(design["value"]),
-            status=_status(results, design, method),
-            standard_error=error_of(design),
-            error_bound=bound_of(design),
-            improvement=_improvement(row, design, row.sel(layout=baseline)) if is_compared else None,
-        ),
-        is_baseline=layout == baseline,
-        n_elements=int(design["elements"]) if "elements" in design.coords else 0,
-    )
+def _others(row: xr.Dataset) -> list[str]:
+    """Indices of which the values at the best designs are compared with those of the baseline's design."""
+    if not row.attrs["baseline"] or "other_value" not in row:
+        return []
+    known = row["other_value"].notnull().any("layout")
+    return [name for name in row["other"].values.tolist() if bool(known.sel(other=name))]
 
 
 def _status(results: xr.Dataset, design: xr.Dataset, method: str) -> Status:
@@ -152,45 +134,38 @@ def _status(results: xr.Dataset, design: xr.Dataset, method: str) -> Status:
     return with_decisive_method(status, method) if method and len(methods(results)) == 1 else status
 
 
-def _improvement(row: xr.Dataset, design: xr.Dataset, base: xr.Dataset) -> Improvement | None:
-    """Improvement over the baseline; None if one of them has no finite value."""
-    percent, own, reference = float(design["improvement"]), float(design["value"]), float(base["value"])
-    if not isfinite(percent):
-        return None
-    return Improvement(
-        percent,
-        error_of(design, "improvement"),
-        bound_of(design, "improvement"),
-        abs(percent * reference) / 100.0 <= _margin(row, design, base) + 2.0 * ACCURACY * min(abs(own), abs(reference)),
+def _estimate(design: xr.Dataset, unit: str, of: str = "value", status: Status = OK) -> Estimate:
+    """Estimate of the index of one design, or of another index at it."""
+    error, bound = error_of(design, of), bound_of(design, of)
+    shared = _road_effects(design, EFFECT if of == "value" else OTHER_EFFECT)
+    sources = [ErrorSource(name, hypot(*effects), tuple(effects)) for name, effects in shared.items()]
+    alone = bound - sum(source.bound for source in sources)
+    return Estimate(
+        float(design["value" if of == "value" else "other_value"]),
+        unit,
+        status,
+        standard_error=None if isnan(error) else error,
+        realisations=int(design["realisations"]) if "realisations" in design else 0,
+        error_sources=() if isnan(bound) else (ErrorSource(ROUNDING, alone), *sources),
     )
 
 
-def _over(row: xr.Dataset, first: DesignResult, second: DesignResult) -> Improvement | None:
-    """Improvement of one design over another."""
-    own, other = first.goal.value, second.goal.value
-    if second.is_baseline:
-        return first.goal.improvement
-    percent = percent_below(own, other)
-    if isnan(percent):
+def _comparison(row: xr.Dataset, unit: str, first: str, second: str) -> Comparison | None:
+    """Comparison of two layouts, on the same roads where one is the baseline; None if one has no finite value.
+
+    Of two others, each has the error of its difference from the baseline on the same roads, if there is a baseline.
+    """
+    one, other = row.sel(layout=first), row.sel(layout=second)
+    two = compare_estimates(_estimate(one, unit), _estimate(other, unit))
+    if not isfinite(two.percent):
         return None
-    error = hypot(*(0.0 if isnan(one.goal.standard_error) else one.goal.standard_error for one in (first, second)))
-    pair = [row.sel(layout=one.name) for one in (first, second)]
-    effects = [_road_effects(one, EFFECT) for one in pair]
-    return Improvement(
-        percent,
-        100.0 * error / abs(other) if isfinite(error) and error else nan,
-        improvement_bound(own, other, first.goal.error_bound, second.goal.error_bound, *effects),
-        is_tie=abs(own - other) <= _margin(row, *pair) + 2.0 * ACCURACY * min(abs(own), abs(other)),
-    )
-
-
-def _margin(row: xr.Dataset, first: xr.Dataset, second: xr.Dataset) -> float:
-    """Difference of two values within their 95 % confidence interval; zero without uncertainties."""
-    if "standard_error" not in row or "realisations" not in row:
-        return 0.0
-    count = max(min(int(one["realisations"]) for one in (first, second)), 2)
-    _, margin = interval_of(0.0, hypot(*(_sampling_error(row, one) for one in (first, second))), count)
-    return 0.0 if isnan(margin) else margin
+    if second == row.attrs["baseline"]:
+        percent, error = -float(one["improvement"]), error_of(one, "improvement")
+        two = replace(two, relative=replace(two.relative, value=percent, standard_error=error))
+    value, error = two.percent * two.second.value / 100.0, hypot(_sampling_error(row, one), _sampling_error(row, other))
+    count = max(min(two.first.realisations, two.second.realisations), 2)
+    interval = interval_of(value, 0.0 if isnan(error) else error, count)
+    return replace(two, difference=Difference(value, unit, error, interval))
 
 
 def _sampling_error(row: xr.Dataset, design: xr.Dataset) -> float:
@@ -213,27 +188,6 @@ def _road_effects(value: xr.Dataset, name: str) -> dict[str, list[float]]:
     return found
 
 
-def _others(results: xr.Dataset, row: xr.Dataset, index: str, layout: str) -> Iterator[IndexResult]:
-    """Other indices of the same design, compared with those of the baseline's design."""
-    baseline = row.attrs["baseline"]
-    if not baseline or "other_value" not in row:
-        return
-    pair = [row.sel(layout=name) for name in (layout, baseline)]
-    for other in results["other"].values.tolist():
-        both = [one.sel(other=other) for one in pair]
-        own, reference = (float(one["other_value"]) for one in both)
-        by, percent = None, percent_below(own, reference)
-        if layout != baseline and isfinite(percent):
-            errors = [error for one in both if isfinite(error := error_of(one, "other"))]
-            spread = 100.0 * hypot(*errors) / abs(reference)
-            bounds = [bound_of(one, "other") for one in both]
-            effects = [_road_effects(one, OTHER_EFFECT) for one in both]
-            bound = improvement_bound(own, reference, bounds[0], bounds[1], *effects)
-            by = Improvement(percent, spread or nan, bound, is_tie=abs(percent) <= _TWO_SIDED * spread)
-        if other != index and not (isnan(own) and isnan(reference)):
-            yield IndexResult(other, index_title(results, other), index_unit(results, other), own, improvement=by)
-
-
 def _at_bounds(design: xr.Dataset) -> Iterator[AtBound]:
     if "at_bound" not in design:
         return
@@ -249,7 +203,7 @@ def _with_other_methods(results: xr.Dataset, index: str, told: Decision) -> str:
     names, text = methods(results), told.verdict.sentence.removesuffix(".")
     for method in names:
         if method != decisive_method(names):
-            winners = _winners(by_method(results, method), index)
+            winners = study_decision(by_method(results, method), index).winners
             if told.winners or winners:
                 text += f"; {method_label(results, method)} {_winners_clause(winners, told)}"
     return f"{text}."

@@ -63,14 +63,19 @@ def test_a_key_that_others_may_replace_is_told_with_them(capsys):
 
 
 def test_all_keys_in_a_table(capsys):
+    """The bounds of a quantity that may be free are a mark beside its unit; those of a range alone are rows."""
     out = told(capsys)
-    table, _, others = out.partition("\n\n")
-    assert [line.split()[0] for line in table.split("\n")[1:] if line[:1].strip()] == list(
-        dict.fromkeys(key.place for key in OF_STUDIES)
-    )
-    assert words(others).endswith(": record, model, fit, signal, rig, simulation")
+    rows = [line.split() for line in out.partition("\n\n")[0].split("\n")[1:] if line[:1].strip()]
+    assert words(out).endswith(": record, model, fit, signal, rig, simulation")
+    marked = {row[0] for row in rows if "*" in row}
+    units = {key.place: key.unit for key in OF_STUDIES}
+    bounds = [place for place in units if place.endswith((".from", ".to")) and units.get(place.rpartition(".")[0])]
+    assert {place.rpartition(".")[0] for place in bounds} == marked
+    assert "vehicle.sprung_mass" in marked
+    assert [row[0] for row in rows] == [place for place in units if place not in bounds]
+    assert "\n* or a table of bounds, from and to: a design variable\n" in out
     for key in OF_STUDIES:
-        assert key.sentence in words(out)
+        assert key.place in bounds or key.sentence in words(out)
 
 
 def test_every_section_of_every_kind_of_file_is_told(capsys):

@@ -10,6 +10,7 @@ from textwrap import wrap
 from typing import Any
 
 from inerter.errors import StudyError
+from inerter.files.common.entries import LOWER, UPPER
 from inerter.files.common.keys import ANY_NAME, Key, below, find_keys, keys_of_files
 from inerter.files.common.kinds import kinds
 from inerter.files.common.suggest import nearest, some
@@ -26,6 +27,7 @@ from inerter.vehicle.registry import VEHICLES
 _WIDTH = 80
 _ROWS: dict[str, Any] = {"vehicle": VEHICLES, "index": INDICES, "method": METHODS, "element": ELEMENTS}
 _PLACE, _UNIT = 32, 11  # columns of the table of keys
+_FREE = " *"  # at the unit of a value that may be free
 _NAMES = {"layouts": "S3"}  # of an example, by its section; elsewhere that of an element
 
 
@@ -76,7 +78,7 @@ def _unknown(wanted: str, keys: Sequence[Key]) -> str:
     about = [
         key.place
         for key in keys
-        if words <= _words_of(f"{key.place} {key.sentence}") and key.name not in (ANY_NAME, "from", "to")
+        if words <= _words_of(f"{key.place} {key.sentence}") and key.name not in (ANY_NAME, LOWER, UPPER)
     ]
     hint = f" Keys that mention it: {some(dict.fromkeys(about))}." if words and about else nearest(wanted, known)
     return f"Unknown key {quote_value(wanted)}.{hint} All keys: inerter explain"
@@ -120,17 +122,27 @@ def _row(what: str, name: str, row: Any) -> Iterator[str]:
 
 
 def _table(keys: Sequence[Key]) -> Iterator[str]:
+    """A row for each key; bounds of a value that may be free are a mark at its unit."""
     yield f"{'key':<{_PLACE}}  {'unit':<{_UNIT}}meaning"
     indent = " " * (_PLACE + 2 + _UNIT)
-    for place in dict.fromkeys(key.place for key in keys):
+    quantities = {key.place for key in keys if key.unit}
+    bounds = {key.place for key in keys if key.name in (LOWER, UPPER) and _parent(key.place) in quantities}
+    free = {_parent(place) for place in bounds}
+    for place in dict.fromkeys(key.place for key in keys if key.place not in bounds):
         alike = [key for key in keys if key.place == place]
         sentences = dict.fromkeys(key.sentence for key in alike)
         text = " ".join(sentences) if len(sentences) == 1 else _by_model(alike)
-        units = dict.fromkeys(key.unit for key in alike if key.unit)
-        head = f"{place:<{_PLACE}}  {' or '.join(units):<{_UNIT - 1}}"
+        units = " or ".join(dict.fromkeys(key.unit for key in alike if key.unit)) + _FREE * (place in free)
+        head = f"{place:<{_PLACE}}  {units:<{_UNIT - 1}}"
         first, *lines = wrap(text, _WIDTH - len(indent), break_on_hyphens=False)
         yield from [f"{head} {first}"] if len(head) < len(indent) else [head.rstrip(), indent + first]
         yield from (indent + line for line in lines)
+    if free:
+        yield from ("", f"{_FREE.strip()} or a table of bounds, {LOWER} and {UPPER}: a design variable")
+
+
+def _parent(place: str) -> str:
+    return place.rpartition(".")[0]
 
 
 def _by_model(keys: Sequence[Key]) -> str:

@@ -8,7 +8,7 @@ from strategies import networks
 from inerter import Damper, Friction, Gap, HalfCar, Inerter, QuarterCar, Spring, free
 from inerter.errors import DesignError
 from inerter.networks.elements import Parallel, Series
-from inerter.networks.transform import linearise, map_elements
+from inerter.networks.transform import linearise, map_elements, notes_of
 
 k, c, b, f, gap = Spring(1e5, "k"), Damper(2e3, "c"), Inerter(30.0, "b"), Friction(5.0, "f"), Gap(1e-3, "gap")
 
@@ -123,3 +123,18 @@ def test_the_kinds_of_joints_stay():
     left = linearise((k | c | f) - (b | f) - gap).network
     assert isinstance(left, Series)
     assert isinstance(left.parts[0], Parallel)
+
+
+def test_notes_name_all_places_of_a_kind_at_once():
+    """Four wheels with the same device are two notes, not eight."""
+    wheels = {
+        "front": linearise(k | f | c - gap),
+        "rear": linearise(k | f),
+        "boot": linearise(c | k - Friction(5.0, "g")),
+    }
+    assert notes_of(wheels) == [
+        "friction 'f' in 'front', 'f' in 'rear' and 'g' in 'boot' left out",
+        "gap 'gap' in 'front' taken as closed",
+        "'k' in 'boot' without force then",
+    ]
+    assert notes_of({"strut": linearise(k | c)}) == []

@@ -15,7 +15,7 @@ from inerter.exports.named_system import FORMS, NamedSystem, named_system
 from inerter.exports.refusals import refuse_moving_ground, refuse_nonlinear, refuse_notes
 from inerter.indices.definition import Index
 from inerter.networks.elements import Network
-from inerter.networks.transform import linearise
+from inerter.networks.transform import linearise, notes_of
 from inerter.records.record import Record
 from inerter.simulation.trajectory import Trajectory
 from inerter.systems.linear import LinearSystem
@@ -103,18 +103,18 @@ class ExportSpec:
 
         Raises `ExportError` if there is something to leave out and that was not said to be on purpose.
         """
-        found, notes = {}, []
-        for name, network in self.networks.items():
-            made = linearise(network)
-            notes += made.notes(name)
-            if not self.linear:
-                refuse_notes(notes)
-            if made.network is None:
-                what = "is rigid" if made.rigid else "carries no force"
+        made = {name: linearise(network) for name, network in self.networks.items()}
+        notes = notes_of(made)
+        if not self.linear:
+            refuse_notes(notes)
+        found = {}
+        for name, linear in made.items():
+            if linear.network is None:
+                what = "is rigid" if linear.rigid else "carries no force"
                 raise ExportError(
                     f"{name!r} {what} without friction and with closed gaps, so there is nothing to export."
                 )
-            found[name] = made.network
+            found[name] = linear.network
         return found, notes
 
     @property

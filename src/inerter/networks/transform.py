@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from inerter.errors import DesignError
-from inerter.formatting import format_range
+from inerter.formatting import format_list, format_range
 from inerter.networks.elements import Bridge, CombinedNetwork, Element, Free, Network, Parallel, Series, Tied
 from inerter.networks.elements.algebra import Complex, Fraction, reduce_bridge
 from inerter.networks.elements.roles import LinearRole
@@ -175,13 +175,22 @@ class LinearisedNetwork:
         """Labels of the closed gaps."""
         return tuple(element.label for element in self.closed)
 
-    def notes(self, mount: str) -> list[str]:
-        """Notes on the elements that the linearised network at a mount neglects."""
-        return [
-            *(f"{element.key} {element.label!r} in {mount!r} left out" for element in self.left_out),
-            *(f"{element.key} {element.label!r} in {mount!r} taken as closed" for element in self.closed),
-            *(f"{label!r} in {mount!r} carries no force then" for label in self.idle),
+
+def notes_of(networks: Mapping[str, LinearisedNetwork]) -> list[str]:
+    """Notes on what linearised networks neglect, by the names of their mounts: one for elements of one kind."""
+    labels: dict[tuple[str, str], dict[str, list[str]]] = {}
+    for mount, made in networks.items():
+        neglected = [
+            *((f"{element.key} ", element.label, "left out") for element in made.left_out),
+            *((f"{element.key} ", element.label, "taken as closed") for element in made.closed),
+            *(("", label, "without force then") for label in made.idle),
         ]
+        for kind, label, what in neglected:
+            labels.setdefault((kind, what), {}).setdefault(mount, []).append(repr(label))
+    places = {
+        of: [f"{format_list(some)} in {mount!r}" for mount, some in there.items()] for of, there in labels.items()
+    }
+    return [f"{kind}{format_list(where)} {what}" for (kind, what), where in places.items()]
 
 
 def linearise(network: Network) -> LinearisedNetwork:

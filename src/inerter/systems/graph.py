@@ -16,6 +16,7 @@ from inerter.networks.transform import (
     expand_elements,
     linearise,
     map_elements,
+    notes_of,
     parts_between,
     to_analysis,
     to_simulation,
@@ -81,24 +82,22 @@ def linear_graph(mechanism: Mechanism) -> Graph:
 
 def _linear_graph(mechanism: Mechanism) -> Graph:
     whole, labels = _collect_labels(mechanism, to_analysis)
+    made = {mount.name: linearise(whole[mount.name]) for mount in mechanism.mounts()}
     networks: dict[str, Network] = {}
-    notes: list[str] = []
-    for mount in mechanism.mounts():
-        linear = linearise(whole[mount.name])
+    for name, linear in made.items():
         if linear.network is None and linear.rigid:
             raise MechanismError(
-                f"{mount.name!r} is rigid in linear analysis, which treats gaps as closed: {linear.gaps[0]!r} joins "
+                f"{name!r} is rigid in linear analysis, which treats gaps as closed: {linear.gaps[0]!r} joins "
                 "its two "
                 f"ends with nothing in between. Put a spring or damper in series with the gap."
             )
         if linear.network is None:
             raise MechanismError(
-                f"{mount.name!r} carries no force in linear analysis, which neglects friction "
+                f"{name!r} carries no force in linear analysis, which neglects friction "
                 f"({', '.join(linear.frictions)}): its ends are unconstrained there. Add a spring, damper or inerter."
             )
-        networks[mount.name] = linear.network
-        notes += linear.notes(mount.name)
-    graph = _expand(mechanism, networks, labels, tuple(notes), dict(mechanism.twins))
+        networks[name] = linear.network
+    graph = _expand(mechanism, networks, labels, tuple(notes_of(made)), dict(mechanism.twins))
     if all(element.plain for element in mechanism.elements()):
         return graph
     return replace(graph, silent=_other_meanings(graph, full_graph(mechanism)))

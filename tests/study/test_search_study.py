@@ -120,6 +120,10 @@ def test_a_network_that_keeps_no_limit_with_real_inerters_has_no_value_with_them
     (real,) = one.real
     assert one.result.ranking[0].status.ok
     assert (real.status, math.isnan(real.value)) == ("infeasible", True)
+    assert real.kept > 0.0
+    assert real.kept_doubt.startswith("infeasible: no feasible design for r.m.s. dynamic tyre load")
+    (row,) = csv_of(found.folder / "search_real_inerters.csv")
+    assert row["same_values_doubt"] == real.kept_doubt
 
 
 def test_a_search_cut_short_resumes_to_the_same_bytes(study: Study, tmp_path: Path) -> None:

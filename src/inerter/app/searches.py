@@ -181,6 +181,7 @@ class _Ranking:
             "standard_error": each.standard_error,
             "ideal": ideal.value,
             "same_values": each.kept,
+            "same_values_doubt": each.kept_doubt,
             "ideal_improvement_percent": before,
             "improvement_percent": after,
         }

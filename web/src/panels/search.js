@@ -216,13 +216,14 @@ const optimised = ({ value, standard_error: error }) =>
 /** @param {{state: State, row: Row, number?: number, factor: number, stepped: boolean, compared: boolean,
  * take: (row: Row) => void}} props */
 function NetworkRow({ state, row, number, factor, stepped, compared, take }) {
-  const { network, status, improvement_percent: part, ideal, same_values: same } = row;
+  const { network, status, improvement_percent: part, ideal, same_values: same, same_values_doubt: doubt } = row;
   return html`<tr data-network=${network}>
     <th scope="row"><div class="found"><span>${number}</span><${Sketch} state=${state} tree=${row.tree} />
       <div><code>${network}</code><div class="scatter">${valuesIn(state.about, { ...row.elements, ...row.values },
         row.active_bounds)}</div></div></div></th>
     <td class="number">${!isOk(status) && html`<div class="doubt">${status}</div>`}
       ${optimised(scaled(row, factor))}
+      ${doubt && html`<div class="doubt">${`same values: ${doubt}`}</div>`}
       ${ideal !== undefined && html`<div class="scatter" title="with the values of the ideal network">${`same values ${
         shown(times(same, factor))}`}</div><div class="scatter">ideal ${shown(times(ideal, factor))}</div>`}</td>
     ${stepped && html`<td class="number">${percentChange(row.gain_on_previous_percent)}</td>`}

@@ -76,6 +76,20 @@ def test_values_are_those_of_the_design_and_of_the_library(found: StudySearch, s
             assert it.evaluate(each.design, index, method).value == pytest.approx(each.value, rel=1e-9)
 
 
+def test_bounds_are_a_sentence_only_where_a_smaller_network_does_as_well(study: Study, tmp_path: Path) -> None:
+    """A mark in the table says which values are at a bound."""
+    narrow = 'inerters = { from = "1 kg", to = "20 kg" }'
+    asked = text(elements=ELEMENTS.replace('inerters = { from = "10 g", to = "100 t" }', narrow))
+    found = search_study(load_text(tmp_path, asked), tmp_path / "out")
+    sections = list(search_sections(found))
+    remarks = [remark for section in sections for remark in section.remarks if " bound" in remark]
+    at_bounds = [each for one in found.searches for each in one.result.ranking if each.active_bounds]
+    assert any(not each.simpler for each in at_bounds)
+    assert any("20 kg*" in str(table.rows) for section in sections for table in section.tables)
+    assert remarks
+    assert all(re.search(r" at its (upper|lower) bound, so .+ is equally good\.$", remark) for remark in remarks)
+
+
 def test_one_damper_beside_the_spring_is_the_baseline(found: StudySearch) -> None:
     for one in found.searches:
         (alone,) = [each for each in one.result.ranking if each.layout == "c1"]

@@ -17,7 +17,7 @@ from inerter.files.study.cases import NO_EQUILIBRIUM, lacks_equilibrium
 from inerter.files.study.quantity_texts import write_resolved
 from inerter.files.study.search_tables import (
     agreement_remark,
-    at_bound_notes,
+    equally_good_notes,
     fixed_table,
     front_networks_table,
     front_points_table,
@@ -62,7 +62,7 @@ def search_sections(found: StudySearch) -> Iterator[Section]:
             if any(each.network for each in one.real):
                 tables.append(real_networks_table(found.study, one))
                 brief.append(tables[-1])
-            remarks = [agreement_remark(one), *(f"{note}." for note in at_bound_notes(one))]
+            remarks = [agreement_remark(one), *(f"{note}." for note in equally_good_notes(one))]
             yield Section(capital(one.heading), tables, remarks=[remark for remark in remarks if remark], brief=brief)
     for front in found.fronts:
         if front.result.front:

@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING
 from inerter.errors import StatusKind
 from inerter.files.study.conditions import condition_labels
 from inerter.files.study.summary import bounds_text
-from inerter.formatting import capital, format_percent, format_percent_size, format_quantity, label_with_unit
+from inerter.formatting import (
+    capital,
+    format_list,
+    format_percent,
+    format_percent_size,
+    format_quantity,
+    label_with_unit,
+)
 from inerter.methods.ties import percent_below
 from inerter.networks.elements import ELEMENT_TYPES, Inerter
 from inerter.table import Column, Content, Quantity, Row, Table, cells, columns
@@ -281,12 +288,12 @@ def networks_shown(one: LayoutSearch) -> list[FoundNetwork]:
     return list(dict.fromkeys((*one.result.frontier, *one.result.ranking[:RANKED])))
 
 
-def at_bound_notes(one: LayoutSearch) -> Iterator[str]:
-    """Remarks on the best networks with elements at their bounds, and on smaller ones that do as well."""
+def equally_good_notes(one: LayoutSearch) -> Iterator[str]:
+    """Remarks on networks of the tables that are no better than a smaller one, because elements are at their bounds."""
     for found in networks_shown(one):
-        if found.active_bounds:
-            ends = ", ".join(f"{name} at its {end} bound" for name, end in found.active_bounds.items())
-            yield f"{found.layout} has {ends}{f', so {found.simpler} is equally good' if found.simpler else ''}"
+        if found.simpler:
+            ends = format_list([f"{name} at its {end} bound" for name, end in found.active_bounds.items()])
+            yield f"{found.layout} has {ends}, so {found.simpler} is equally good"
 
 
 def _parameters(found: Iterable[FoundNetwork | FrontNetwork | RealResult]) -> list[str]:

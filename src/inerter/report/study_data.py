@@ -12,6 +12,7 @@ import xarray as xr
 
 from inerter.figures.labels import swept_places
 from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
+from inerter.files.study.design_numbers import number_entry, numbers_in
 from inerter.files.study.results import units_by_name
 from inerter.files.study.running import StudyResult
 from inerter.files.study.summary import design_rows
@@ -63,7 +64,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
     data, study = result.data, result.study
     errors = [name for name in ("standard_error", "improvement_error", "realisations") if _is_known(data, name)]
     units = units_by_name(data, "index")
-    parameters = data.parameter.values.tolist()
+    parameters, numbers = data.parameter.values.tolist(), numbers_in(data)
     for case, method, row in design_rows(data, study):
         swept = {sweep.label: value for sweep, value in zip(study.sweeps, case.swept, strict=True)}
         names = {"layout": case.layout, "index": case.index, **swept, "method": method}
@@ -78,6 +79,7 @@ def _designs(result: StudyResult) -> Iterator[dict[str, Any]]:
             **({"at_speeds": at_speeds(data, names)} if "at_speeds.value" in data else {}),
             **({"in_conditions": _in_conditions(data, row, errors)} if CONDITION in data.dims else {}),
             **({"limits": _limits(data, row)} if "limit" in data.dims else {}),
+            **{name: json_data(number_entry(name, row)) for name in numbers},
             "status": row["status"],
             "parameters": {name: value for name, value in values if np.isfinite(value)},
         }

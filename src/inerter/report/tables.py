@@ -30,6 +30,7 @@ from inerter.figures.labels import (
     swept_scale,
     swept_words,
 )
+from inerter.files.study.design_numbers import NUMBER, number_entry, numbers_in
 from inerter.files.study.running import DATASET, SUMMARY
 from inerter.formatting import Scale, capital, choose_scale, format_number, format_percent, format_quantity
 from inerter.report.index_summary import extremes, is_compared, place_text
@@ -86,24 +87,33 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
     at_index, versus = results.sel(index=index), bool(compared_layouts(results))
     parameters = at_index["parameter_value"].dropna("parameter", how="all")["parameter"].values.tolist()
     searched, best = is_searched(at_index), next(iter(best_layouts(results, index)), None)
-    rows = []
+    rows, numbers = [], numbers_in(results)
     for name in layouts(results):
         design = at_index.sel(layout=name)
         cells = [
             Cell(name),
             Cell(design_quantity(design, index_unit(results, index))),
             *([Cell(_improvement(design, results.attrs["baseline"]))] if versus else []),
+            *(_number(name, design) for name in numbers),
             *(_parameter(design.sel(parameter=parameter)) for parameter in parameters),
             *([Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []),
         ]
         rows.append(Row(cells, name == best, problem_of(str(design["status"].item()))))
     heads = [
         *columns("Layout", index, *(["Improvement"] if versus else [])),
+        *columns(*(str(at_index[f"{NUMBER}{name}.value"].attrs["heading"]) for name in numbers)),
         *(Column(parameter, listed="Parameters") for parameter in parameters),
         *([Column("Agreement", only_on_pages=True)] if searched else []),
     ]
     what = f"Best for {index_words(results, index)}" if searched else capital(index_words(results, index))
     return Table(f"{what}{by_which(results)}", heads, rows)
+
+
+def _number(name: str, design: xr.Dataset) -> Cell:
+    """Number of a design, with a doubt about it."""
+    value, bound, status = (one.item() for one in number_entry(name, design).values())
+    unit = design[f"{NUMBER}{name}.value"].attrs["units"]
+    return Cell(Quantity(value, unit, bound=bound), problem_of(status))
 
 
 def is_searched(results: xr.Dataset) -> bool:

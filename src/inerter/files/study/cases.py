@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from inerter.errors import Status, StatusKind, worst_of
+from inerter.files.study.design_numbers import DESIGN_NUMBERS
 from inerter.files.study.limits import all_limits, limit_results
 from inerter.files.study.parts import FAILURES, PartResult, StudyPart, run_part
 from inerter.files.study.speeds import at_other_speeds, is_at_one_speed
@@ -131,6 +132,7 @@ class Outcome(PartResult):
     speeds: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> as `at_other_speeds` has them
     speed_message: str = ""  # what makes those doubtful
     in_conditions: dict[str, list[dict[str, Any]]] = field(default_factory=dict)  # method -> own index in each
+    numbers: dict[str, dict[str, Any]] = field(default_factory=dict)  # name -> value, error bound and status
 
     def feasible_values(self, method: str) -> dict[str, float]:
         """The indices of this design by a method; empty where no design satisfies the limits."""
@@ -215,6 +217,7 @@ def _run(whole: Study, case: Case, threads: int) -> Outcome:
         speeds=speeds,
         speed_message=speed_message,
         in_conditions={m: list(map(_in_condition, e.in_conditions)) for m, e in own.items() if e.in_conditions},
+        numbers={name: one.entry(study, best.vehicle) for name, one in DESIGN_NUMBERS.items()},
     )
 
 

@@ -17,6 +17,7 @@ from inerter.errors import StatusKind
 from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.cases import Case, Outcome, cases
 from inerter.files.study.conditions import CONDITION, IN_CONDITIONS, condition_labels
+from inerter.files.study.design_numbers import DESIGN_NUMBERS, NUMBER
 from inerter.files.study.limits import each_of, is_swept, limit_text
 from inerter.files.study.method_labels import limit_basis, method_labels
 from inerter.files.study.notes import Notes, road_notes
@@ -92,6 +93,9 @@ class DatasetBuilder:
         for i, found in enumerate(outcome.limits):
             for name, number_told in zip(LIMITED, found, strict=True):
                 arrays[name][number, i] = number_told
+        for name, entry in outcome.numbers.items():
+            for end, content in entry.items():
+                arrays[f"{NUMBER}{name}.{end}"][number] = content
         if not self.study.sweeps:
             self.designs[case] = outcome
 
@@ -287,6 +291,8 @@ def _empty_dataset(study: Study, parameters: Mapping[str, str]) -> xr.Dataset:
         array = np.full([sizes[dim] for dim in dims], empty, dtype=object if isinstance(empty, str) else None)
         variables[name] = (dims, array, {"long_name": long_name})
     data = xr.Dataset(variables, _labels_of(study, parameters))
+    for name, number in DESIGN_NUMBERS.items():
+        data[f"{NUMBER}{name}.value"].attrs.update(units=number.unit, heading=number.heading)
     if study.limits:
         data["limit_value"].attrs["basis"] = limit_basis(study)
     for name in PERCENT & set(variables):
@@ -302,6 +308,11 @@ def _variables_of(study: Study) -> dict[str, _Variable]:
         **(LIMITED if study.limits else {}),
         **(_at_speeds_of(values) if is_at_one_speed(study) else {}),
         **(_conditions_of(values) if study.conditions else {}),
+        **{
+            f"{NUMBER}{name}.{end}": one
+            for name, number in DESIGN_NUMBERS.items()
+            for end, one in number.variables().items()
+        },
     }
 
 

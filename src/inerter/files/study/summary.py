@@ -12,6 +12,7 @@ import xarray as xr
 from inerter.atomic_io import open_text
 from inerter.files.study.cases import Case, cases
 from inerter.files.study.conditions import IN_CONDITIONS, condition_labels
+from inerter.files.study.design_numbers import DESIGN_NUMBERS, number_entry, numbers_in
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain, units_by_name
 from inerter.files.study.study import Study
 from inerter.formatting import label_with_unit
@@ -48,6 +49,11 @@ def _header(study: Study, data: xr.Dataset) -> list[str]:
             for text in (label_with_unit(limit.words, limit.unit), f"cost of {limit.words}_percent")
         ),
         *(f"part of {study.limits[i].words}" for i in _on_parts(data)),
+        *(
+            text
+            for name in numbers_in(data)
+            for text in (label_with_unit(name, DESIGN_NUMBERS[name].unit), f"{name}.error_bound", f"{name}.status")
+        ),
         *(
             text
             for label in condition_labels(study.conditions)
@@ -99,6 +105,7 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
             *row["other_value"],
             *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
             *(row["limit.part"][i] for i in parts),
+            *(content for name in numbers_in(data) for content in number_entry(name, row).values()),
             *(
                 row[f"{IN_CONDITIONS}{name}"][i]
                 for i in range(len(study.conditions))

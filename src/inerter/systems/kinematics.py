@@ -43,8 +43,6 @@ class Kinematics:
 
     graph: Graph
     outputs: dict[str, Output]
-    inertia_nodes: Matrix  # rows of masses and inerters over nodes and ...
-    inertia_roads: Matrix  # ... roads
     motions: tuple[Matrix, Matrix, Matrix]  # R, N, V
     rates: tuple[Matrix, Matrix, Matrix]
     places: Positions
@@ -144,12 +142,10 @@ def _analyse_layout(layout: _Layout) -> Kinematics:
     )
     switches = [(branches[i].element.switch, places.own[i]) for i in special]
     names = [[_NUMBER[switch.guard], own] for switch, own in switches if switch is not None]
-    jolted = np.any(np.abs(inertia.roads + inertia.nodes @ V) > 1e-12, axis=0)
+    jolted = np.any(np.abs(kinetic_road) > 1e-12, axis=0)
     found = Kinematics(
         graph=graph,
         outputs=outputs(mechanism, graph),
-        inertia_nodes=inertia.nodes,
-        inertia_roads=inertia.roads,
         motions=(R, N, V),
         rates=rates,
         places=places,

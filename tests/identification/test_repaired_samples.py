@@ -113,6 +113,19 @@ def test_replaced_samples_are_delayed_like_all_others(fault: Suspect) -> None:
     assert np.std(late[middle] - prompt[855:895]) < 0.1 * np.std(late[middle] - prompt[middle])
 
 
+def test_hum_of_the_encoder_is_named_with_the_values_without_it() -> None:
+    """4 um at 50 Hz are 30 N of the inertance, of which the force knows nothing."""
+    record, _ = rigid_record(duration=2.0)
+    hum = 4e-6 * np.sin(2.0 * np.pi * 50.0 * record.time + 0.3)
+    wrong = replace(record, displacement=record.displacement + hum)
+    (first, *_), _ = explained(quick_fit(wrong, MODELS["friction"], {"b": 80.0, "f": 12.0}))
+    assert first.sentence.startswith("the displacement contains hum of 4")
+    assert first.explained > 0.95
+    for name, true in (("b", 80.0), ("f", 12.0)):
+        value, error = first.estimates[name]
+        assert abs(value - true) < 4.0 * error < 0.01 * true
+
+
 @pytest.mark.parametrize("place", [700, 1111])
 def test_a_slip_of_the_encoder_is_closed_where_it_is(place: int) -> None:
     """An extrapolation over one sample beyond a step is 19/16 of it: the joint was placed beside it, and not closed."""

@@ -108,6 +108,12 @@ def humming(seed: int) -> Record:
     return replace(record, force=record.force + 4.0 * np.sin(2.0 * np.pi * frequency * record.time))
 
 
+def encoder_humming(seed: int) -> Record:
+    record = sound(seed)
+    hum = 3e-6 * np.sin(2.0 * np.pi * (50.03, 59.98)[seed % 2] * record.time + seed)
+    return replace(record, displacement=record.displacement + hum)
+
+
 FAULTS = {
     "spikes": with_spikes,
     "spikes of the encoder": with_spikes_of_the_encoder,
@@ -117,6 +123,7 @@ FAULTS = {
     "hidden-jitter": jittering,
     "clock-drift": drifting,
     "line": humming,
+    "hum of the encoder": encoder_humming,
 }
 
 
@@ -154,6 +161,19 @@ def test_numbers_of_the_faults() -> None:
     (line,) = [f for f in findings(humming(1)) if str(f.kind) == "line"]
     assert line.numbers["frequency"] == pytest.approx(137.3, abs=0.1)
     assert line.numbers["amplitude"] == pytest.approx(4.0, rel=0.2)
+    (hum,) = [f for f in findings(encoder_humming(1)) if str(f.kind) == "hum"]
+    assert hum.about == "displacement"
+    assert hum.numbers["frequency"] == pytest.approx(59.98, abs=0.02)
+    assert hum.numbers["amplitude"] == pytest.approx(3e-6, rel=0.05)
+
+
+@pytest.mark.parametrize("frequency", [50.0, 60.0])
+def test_a_motion_at_the_frequency_of_the_mains_is_no_hum(frequency: float) -> None:
+    """The force follows it."""
+    time = np.arange(4000) * 1e-3
+    (x, v, a), w = motion(time), 2.0 * np.pi * frequency
+    x, v, a = x + 3e-6 * np.sin(w * time), v + 3e-6 * w * np.cos(w * time), a - 3e-6 * w**2 * np.sin(w * time)
+    assert kinds(read(time, x, 100.0 * a + 10.0 * np.sign(v), 0)) == set()
 
 
 @pytest.mark.parametrize("fault", ["spikes", "spikes of the encoder", "held"])

@@ -22,11 +22,12 @@ from inerter.identification.problem import FitProblem
 from inerter.identification.statements.causes import Details, Suspect
 from inerter.identification.statements.patterns import MisfitPattern
 from inerter.records.instants import Instant
-from inerter.records.record import Record
+from inerter.records.record import CHANNELS, Record
 from inerter.records.repair import faulty_instants, without_faulty_samples
 from inerter.records.saturation import is_flat
 from inerter.records.slower_channels import SlowerChannel, slower_channel
 from inerter.records.smoothing import bandwidth_of, noise_of
+from inerter.records.spectral_lines import SpectralLine, hum_of_displacement
 
 Matrix = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -60,6 +61,8 @@ def recording_faults(problem: FitProblem, places: Sequence[Localisation]) -> Ite
         yield _begun_in_motion(problem)
     for ends in (("upper",), ("lower",), ("upper", "lower")):
         yield _end_stop(ends, stroke, peak)
+    for e in problem.experiments:
+        yield from _hum_of_displacement(e)
     for e, place in zip(problem.experiments, places, strict=False):
         lines = (f for f in place.patterns if f.kind is MisfitPattern.LINE and f.numbers["foreign"])
         for found in lines:
@@ -258,10 +261,30 @@ def _hum(record: Record, frequency: float, amplitude: float) -> Hypothesis:
 
     def details(values: Values) -> Details:
         size = math.hypot(values[names[0]], values[names[1]])
-        return {"frequency": frequency + values[names[2]], "amplitude": size, "rate": 1.0 / record.interval}
+        return _hum_details(record, "force", SpectralLine(frequency + values[names[2]], size))
 
     starts = tuple({names[i]: s * amplitude} for i in (0, 1) for s in (1.0, -1.0))
     return Hypothesis(Suspect.HUM, unknowns, read=read, details=details, starts=starts)
+
+
+def _hum_details(record: Record, channel: str, line: SpectralLine) -> Details:
+    return {**vars(line), "channel": channel, "unit": CHANNELS[channel], "rate": 1.0 / record.interval}
+
+
+def _hum_of_displacement(e: Experiment) -> Iterator[Hypothesis]:
+    """The displacement of one record without a sine of the mains that the force does not follow."""
+    record, found = e.record, hum_of_displacement(e.record)
+    if found is None:
+        return
+    line, course = found
+    bandwidth = e.motion.bandwidth if e.motion.asked else None
+    mended = experiment_of(record.with_notes(displacement=record.displacement - course), bandwidth, rigid=e.rigid)
+    whole = replace(mended, record=record, kept=e.kept, tally=e.tally)
+    yield Hypothesis(
+        Suspect.HUM,
+        change_motion=lambda other, values: whole if other.record is record else other,
+        details=lambda values: _hum_details(record, "displacement", line),
+    )
 
 
 def _changed_device(problem: FitProblem, record: Record, time: float) -> Hypothesis:

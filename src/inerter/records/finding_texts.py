@@ -227,9 +227,9 @@ def _swapped_columns_text(f: Finding) -> str:
 
 
 def _hum_text(f: Finding) -> str:
-    n = f.numbers
-    hum = f"{format_quantity(n['amplitude'], 'N', 3)} at {format_quantity(n['frequency'], 'Hz', 6)}"
-    return f"The force contains mains hum: {hum}. Check the grounding of the load cell."
+    n, (unit, sensor) = f.numbers, {"force": ("N", "the load cell")}.get(f.about, ("m", "its sensor"))
+    hum = f"{format_quantity(n['amplitude'], unit, 3)} at {format_quantity(n['frequency'], 'Hz', 6)}"
+    return f"The {f.about} contains mains hum: {hum}. Check the grounding of {sensor}."
 
 
 def _format_correlations(f: Finding) -> str:

@@ -20,13 +20,12 @@ from inerter.records.repair import faulty_instants, without_faulty_samples
 from inerter.records.saturation import plateaus, saturated_samples
 from inerter.records.slower_channels import at_readings, slower_channel
 from inerter.records.smoothing import Motion, resolution, smooth_displacement
-from inerter.records.spectral_lines import isolated_line
+from inerter.records.spectral_lines import HUM, hum_of_displacement, isolated_line
 from inerter.statements import Severity, by_severity
 
 Vector = NDArray[np.float64]
 FEW = 100  # samples, below which little can be fitted
 _FOLDED = 0.8  # of half the sampling rate: motion up to there may go on beyond
-HUM = (50.0, 60.0)  # Hz of the mains
 _FASTEST = 1e4  # m/s^2 r.m.s., above which times are more often in a wrong unit
 _INERTANCE, _LEAST = 1e3, 1e-3  # kg that give less than this share of the force: the same, of too slow a motion
 _CERTAIN, _SAME_SCALE = 0.03, 0.05  # rad, of the phase of a line; relative difference of two scales
@@ -75,6 +74,7 @@ def _motion_findings(record: Record, motion: Motion) -> list[Finding]:
         *_undersampling(record, motion),
         *_swapped_columns(record),
         *(_hum(record, motion) or _line(record, motion)),
+        *_hum_of_displacement(record),
         *_clock(record, motion),
         *polarity_delay.polarity_finding(record, motion),
         *polarity_delay.delay_finding(record, motion),
@@ -351,6 +351,15 @@ def _hum(record: Record, motion: Motion) -> list[Finding]:
             numbers = {"frequency": mains, "amplitude": amplitude}
             return [Finding(RecordFinding.HUM, Severity.WARNING, "force", numbers)]
     return []
+
+
+def _hum_of_displacement(record: Record) -> list[Finding]:
+    """Mains hum in the displacement, which the force of a device would follow if it were a motion."""
+    found = hum_of_displacement(record)
+    if found is None:
+        return []
+    numbers = {"frequency": found[0].frequency, "amplitude": found[0].amplitude}
+    return [Finding(RecordFinding.HUM, Severity.WARNING, "displacement", numbers)]
 
 
 def _line(record: Record, motion: Motion) -> list[Finding]:

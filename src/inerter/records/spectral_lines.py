@@ -1,4 +1,4 @@
-"""Narrow spectral lines in a force that no motion explains: mains hum, its aliases, and other pickup."""
+"""Narrow spectral lines that no motion explains: mains hum, its aliases, and other pickup."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from inerter.records.record import Record
 from inerter.records.smoothing import Motion
 
 Vector = NDArray[np.float64]
+HUM = (50.0, 60.0)  # Hz of the mains
 _ALONE = 3.0  # amplitude over that of any other line within an octave to either side
 _CLEAR = 12.0  # amplitude over the median within that range
 _LEAST = 1e-3  # of the standard deviation of the force
@@ -26,7 +27,7 @@ _MANY = 1 << 20
 
 @dataclass(frozen=True)
 class SpectralLine:
-    """An isolated sine in the spectrum of the force: frequency [Hz] and amplitude [N]."""
+    """An isolated sine in the spectrum of a channel: frequency [Hz] and amplitude [unit of the channel]."""
 
     frequency: float
     amplitude: float
@@ -56,6 +57,35 @@ def isolated_line(record: Record, motion: Motion) -> SpectralLine | None:
         alone = size > _ALONE * float(amplitude[nearby].max()) and size > _CLEAR * float(np.median(amplitude[nearby]))
         if alone and size > _LEAST * float(np.std(values)):
             return SpectralLine(_frequency(amplitude, int(at)) * resolution, size)
+    return None
+
+
+def hum_of_displacement(record: Record) -> tuple[SpectralLine, Vector] | None:
+    """A sine of the mains in the displacement that the force does not follow, and its course [m]; None without one."""
+    size = record.time.size
+    if size < 512 or record.duration < 1.0:
+        return None
+    window, moved = get_window("hann", size), record.displacement - float(np.mean(record.displacement))
+    moving, loading = (
+        2.0 * np.abs(np.fft.rfft(window * (values - np.mean(values)))) / float(window.sum())
+        for values in (moved, record.force)
+    )
+    for mains in HUM:
+        lines = mains * size * record.interval
+        near = np.arange(math.floor(0.99 * lines), math.ceil(1.01 * lines) + 1)
+        if near[-1] > moving.size - _WIDTH:
+            continue
+        at = int(near[np.argmax(moving[near])])
+        nearby = np.r_[int(at / 1.4) : at - _WIDTH, at + _WIDTH + 1 : min(int(1.4 * at), moving.size)]
+        line = slice(at - _WIDTH, at + _WIDTH + 1)
+        alone = moving[at] > max(_ALONE * float(moving[nearby].max()), _CLEAR * float(np.median(moving[nearby])))
+        if not alone or loading[line].max() > _ALONE * float(loading[nearby].max()):
+            continue
+        frequency = _frequency(moving, at) / (size * record.interval)
+        phase = 2.0 * math.pi * frequency * (record.time - record.time[0])
+        sines = np.column_stack([np.cos(phase), np.sin(phase)])
+        course = sines @ np.linalg.lstsq(window[:, None] * sines, window * moved)[0]
+        return SpectralLine(frequency, float(math.sqrt(2.0) * np.std(course))), course
     return None
 
 

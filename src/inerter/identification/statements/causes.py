@@ -273,7 +273,7 @@ class Suspect(StrEnum):
     HUM = (
         "hum",
         lambda d: (
-            f"the force contains hum of {format_quantity(d['amplitude'], 'N', 3)} at "
+            f"the {d['channel']} contains hum of {format_quantity(d['amplitude'], d['unit'], 3)} at "
             f"{format_quantity(d['frequency'], 'Hz')}, or at an alias of it such as "
             f"{format_quantity(d['rate'] - d['frequency'], 'Hz')}"
         ),

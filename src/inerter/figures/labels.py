@@ -88,6 +88,12 @@ def improvement_text(design: xr.Dataset) -> str:
     )
 
 
+def improvement_over_baseline(design: xr.Dataset) -> str:
+    """The improvement of one design with its sign; empty for the baseline itself, and without one."""
+    baseline = design.attrs["baseline"]
+    return improvement_text(design) if baseline and design["layout"].item() != baseline else ""
+
+
 def swept_places(results: xr.Dataset) -> list[str]:
     """Names of the swept places, such as elements; also names of dimensions."""
     return [str(name) for name in results["status"].dims if name not in ("layout", "index")]
@@ -143,6 +149,12 @@ def layouts(results: xr.Dataset) -> list[str]:
     """Names of all layouts, the baseline first if there is one, then in the order of the study."""
     names: list[str] = results["layout"].values.tolist()
     return sorted(names, key=lambda name: name != results.attrs["baseline"])
+
+
+def marked_layouts(results: xr.Dataset) -> list[str]:
+    """Names of all layouts as headings, of which the baseline is marked."""
+    baseline = results.attrs["baseline"]
+    return [f"{name} (baseline)" if name == baseline else name for name in layouts(results)]
 
 
 def compared_layouts(results: xr.Dataset) -> list[str]:

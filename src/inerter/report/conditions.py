@@ -12,12 +12,14 @@ from inerter.figures.labels import (
     by_which,
     compared_layouts,
     design_quantity,
+    improvement_over_baseline,
     improvement_text,
     index_unit,
     index_words,
     indices,
     indices_with_values,
     layouts,
+    marked_layouts,
     one_method,
 )
 from inerter.files.study.conditions import CONDITION, IN_CONDITIONS, MOST_LISTED
@@ -101,11 +103,9 @@ def _table(results: xr.Dataset, index: str) -> Table:
         cells = [Cell(label), *([Cell(share)] if by_share else [])]
         for name in layouts(results):
             design = data.sel(index=index, layout=name)
-            improvement = improvement_text(design) if name in compared_layouts(results) else ""
-            cells.append(Cell(design_quantity(design, scale.unit, scale), improvement))
+            cells.append(Cell(design_quantity(design, scale.unit, scale), improvement_over_baseline(design)))
         rows.append(Row(cells, strong=data is results))
-    names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
-    heads = [Column("Condition", words=True), *columns(*(["Share"] if by_share else []), *names)]
+    heads = [Column("Condition", words=True), *columns(*(["Share"] if by_share else []), *marked_layouts(results))]
     return Table(f"{_caption(results, index)}, in {scale.unit}", heads, rows)
 
 

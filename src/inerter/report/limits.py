@@ -67,7 +67,8 @@ def _swept_table(results: xr.Dataset, index: str) -> Table:
     for name in layouts(results):
         for limit in results["limit"].values.tolist():
             entry = _entry(results, name, index, limit)
-            rows.append(Row(cells(name, _words(results, limit), *_describe_swept_limit(entry))))
+            at = _where(entry, entry["limit_active"].values & ~infeasible(entry).values) or ("nowhere", "")
+            rows.append(Row(cells(name, _words(results, limit), *at)))
         rows.append(Row(cells(name, "all limits", *_describe_infeasible(_entry(results, name, index)))))
     heads = [Column("Layout"), *(Column(name, words=True) for name in ("Limit", "Active")), Column("Where", prose=True)]
     caption = f"Limits of the designs that are best for {index_words(results, index)}{_basis(results)}"
@@ -112,19 +113,10 @@ def _describe_limit(entry: xr.Dataset, index: str) -> tuple[Content, str]:
     return content, f"raising it by 1 % changes {index} by {format_share(cost / 100.0, 2, '+')}"
 
 
-def _describe_swept_limit(entry: xr.Dataset) -> tuple[str, str]:
-    """At how many swept values a limit is active, and where."""
-    return _where(entry, entry["limit_active"].values & ~_is_infeasible(entry)) or ("nowhere", "")
-
-
 def _describe_infeasible(entry: xr.Dataset) -> tuple[str, str]:
     """At how many swept values no design is feasible, and where."""
-    count, where = _where(entry, _is_infeasible(entry)) or ("", "")
+    count, where = _where(entry, infeasible(entry).values) or ("", "")
     return (f"no feasible design {count}", where) if count else ("feasible everywhere", "")
-
-
-def _is_infeasible(entry: xr.Dataset) -> NDArray[np.bool_]:
-    return np.asarray(infeasible(entry).values)
 
 
 def _where(entry: xr.Dataset, wanted: NDArray[np.bool_]) -> tuple[str, str] | None:

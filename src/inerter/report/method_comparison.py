@@ -8,6 +8,7 @@ from inerter.figures.labels import (
     by_method,
     compared_layouts,
     design_quantity,
+    improvement_over_baseline,
     improvement_text,
     index_unit,
     index_words,
@@ -31,7 +32,7 @@ def _table(results: xr.Dataset, index: str) -> Table:
     unit = choose_scale(results["value"].sel(index=index).values.ravel().tolist(), index_unit(results, index))
     rows = [
         Row([Cell(name), *(_cell(by_method(results, method), index, name, unit) for method in methods(results))])
-        for name in _row_layouts(results)
+        for name in (compared_layouts(results) if swept_places(results) else []) or layouts(results)
     ]
     caption = f"{capital(index_words(results, index))} {_caption_clause(results, unit)}"
     return Table(
@@ -46,16 +47,11 @@ def _caption_clause(results: xr.Dataset, unit: Scale) -> str:
     return f"by each method, at its best{than}"
 
 
-def _row_layouts(results: xr.Dataset) -> list[str]:
-    return (compared_layouts(results) if swept_places(results) else []) or layouts(results)
-
-
 def _cell(results: xr.Dataset, index: str, layout: str, unit: Scale) -> Cell:
     """Value and improvement; over a sweep, the largest improvement or the least value with its place."""
-    row, baseline = results.sel(layout=layout, index=index), results.attrs["baseline"]
+    row = results.sel(layout=layout, index=index)
     if not swept_places(results):
-        better = "" if layout == baseline or not baseline else improvement_text(row)
-        return Cell(design_quantity(row, unit.unit, unit), better)
+        return Cell(design_quantity(row, unit.unit, unit), improvement_over_baseline(row))
     ends = extremes(row["improvement" if compared_layouts(results) else "value"])
     if ends is None:
         return Cell("n/a")

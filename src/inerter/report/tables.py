@@ -16,12 +16,14 @@ from inerter.figures.labels import (
     design_quantity,
     error_of,
     flat_range,
+    improvement_over_baseline,
     improvement_text,
     index_unit,
     index_words,
     indices,
     infeasible,
     layouts,
+    marked_layouts,
     method_label,
     methods,
     one_method,
@@ -79,10 +81,6 @@ def map_tables(results: xr.Dataset) -> list[Table]:
     return [_map_table(results, index, name) for index in indices(results) for name in names]
 
 
-def _improvement(design: xr.Dataset, baseline: str) -> str:
-    return "baseline" if design["layout"].item() == baseline else improvement_text(design)
-
-
 def _design_table(results: xr.Dataset, index: str) -> Table:
     at_index, versus = results.sel(index=index), bool(compared_layouts(results))
     parameters = at_index["parameter_value"].dropna("parameter", how="all")["parameter"].values.tolist()
@@ -93,7 +91,7 @@ def _design_table(results: xr.Dataset, index: str) -> Table:
         cells = [
             Cell(name),
             Cell(design_quantity(design, index_unit(results, index))),
-            *([Cell(_improvement(design, results.attrs["baseline"]))] if versus else []),
+            *([Cell(improvement_over_baseline(design) or "baseline")] if versus else []),
             *(_number(name, design) for name in numbers),
             *(_parameter(design.sel(parameter=parameter)) for parameter in parameters),
             *([Cell(f"{int(design['agreed'])} of {int(design['starts'])}")] if searched else []),
@@ -204,15 +202,13 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
         cells = []
         for name in layouts(results):
             design = here.sel(layout=name)
-            improvement = _improvement(design, results.attrs["baseline"]) if name in compared_layouts(results) else ""
-            cells.append(Cell(design_quantity(design, values.unit, values), improvement))
+            cells.append(Cell(design_quantity(design, values.unit, values), improvement_over_baseline(design)))
         rows.append(Row([Cell(_swept_number(here, element, swept)), *cells]))
-    names = [f"{name} (baseline)" if name == results.attrs["baseline"] else name for name in layouts(results)]
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
     if _are_far(data.sizes[element]):
         some += ", the extremes among them"
     caption = f"Best {index_words(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
-    return Table(caption, columns(words, *names), rows, swept=True, failures=_failures(data))
+    return Table(caption, columns(words, *marked_layouts(results)), rows, swept=True, failures=_failures(data))
 
 
 def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:

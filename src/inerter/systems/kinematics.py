@@ -122,7 +122,7 @@ def _analyse_layout(layout: _Layout) -> Kinematics:
     mechanism = layout.mechanism
     graph = full_graph(mechanism)
     branches = graph.branches
-    inertia = _inertia(mechanism, graph)
+    inertia = _Inertia(*inertias(mechanism, graph), inertia_values(mechanism, graph))
     pushed = ports(mechanism, graph)
     *motions, weighs = _velocities(graph, inertia, pushed, len(mechanism.roads))
     R, N, V = motions
@@ -227,10 +227,6 @@ class _Inertia:
     nodes: Matrix
     roads: Matrix
     values: Matrix
-
-
-def _inertia(mechanism: Mechanism, graph: Graph) -> _Inertia:
-    return _Inertia(*inertias(mechanism, graph), inertia_values(mechanism, graph))
 
 
 @dataclass(frozen=True, eq=False)

@@ -98,6 +98,12 @@ def test_a_short_sweep_is_shown_at_all_its_values():
     assert [line.split() for line in lines[3:9:2]] == [["+3.0", "%"], ["-2.0", "%"], ["+7.0", "%"]]
 
 
+def test_an_index_without_a_unit_has_none_in_captions():
+    results = sweep(stiffness=MANY[::3])
+    results = results.assign_coords(index_unit=("index", ["" for _ in results["index"].values]))
+    assert terminal_text(results).startswith("Best ride comfort (J1), over k in kN/m\n")
+
+
 def test_a_sweep_by_its_best_and_its_worst():
     results = improved(sweep(stiffness=MANY))
     results["improvement"].loc[{"layout": "S2", "index": "J5"}] = [3.0, 1.0, 1.0, 1.0, -2.0, 1.0, 7.0]

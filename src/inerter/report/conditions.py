@@ -106,7 +106,8 @@ def _table(results: xr.Dataset, index: str) -> Table:
             cells.append(Cell(design_quantity(design, scale.unit, scale), improvement_over_baseline(design)))
         rows.append(Row(cells, strong=data is results))
     heads = [Column("Condition", words=True), *columns(*(["Share"] if by_share else []), *marked_layouts(results))]
-    return Table(f"{_caption(results, index)}, in {scale.unit}", heads, rows)
+    unit = f", in {scale.unit}" if scale.unit else ""
+    return Table(f"{_caption(results, index)}{unit}", heads, rows)
 
 
 def _extreme_table(results: xr.Dataset, index: str) -> Table:

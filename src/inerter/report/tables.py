@@ -207,7 +207,8 @@ def _sweep_table(results: xr.Dataset, index: str, by: str = "") -> Table:
     some = f", {len(points)} of {data.sizes[element]} values" if len(points) < data.sizes[element] else ""
     if _are_far(data.sizes[element]):
         some += ", the extremes among them"
-    caption = f"Best {index_words(results, index)} in {values.unit}, over {words} in {swept.unit}{by}{some}"
+    best, over = _in_unit(index_words(results, index), values.unit), _in_unit(words, swept.unit)
+    caption = f"Best {best}, over {over}{by}{some}"
     return Table(caption, columns(words, *marked_layouts(results)), rows, swept=True, failures=_failures(data))
 
 
@@ -226,15 +227,19 @@ def _map_table(results: xr.Dataset, index: str, layout: str) -> Table:
             cells.append(Cell(improvement_text(design), str(number)) if compared_layouts(results) else Cell(number))
         rows.append(Row([Cell(_swept_number(data.isel({first: i}), first, down)), *cells]))
     over = (data.isel({second: j}) for j in _spread(data.sizes[second], _MOST_ACROSS))
-    words = [f"{w} in {u.unit}" for w, u in zip(swept_words(results), (down, across), strict=True)]
+    words = [_in_unit(w, u.unit) for w, u in zip(swept_words(results), (down, across), strict=True)]
     what = f"improvement over {results.attrs['baseline']} and its value" if compared_layouts(results) else "value"
     caption = (
-        f"{layout}, best {index_words(results, index)}: {what} in {values.unit}, over {words[0]} in rows and "
+        f"{layout}, best {index_words(results, index)}: {_in_unit(what, values.unit)}, over {words[0]} in rows and "
         f"{words[1]} in columns{by_which(results)}"
     )
     corner = f"{capital(swept_words(results)[0])} ↓, {swept_words(results)[1]} →"
     heads = columns(corner, *(_swept_number(here, second, across) for here in over))
     return Table(caption, heads, rows, swept=True, failures=_failures(results.sel(index=index, layout=[layout])))
+
+
+def _in_unit(words: str, unit: str) -> str:
+    return f"{words} in {unit}" if unit else words
 
 
 def _spread(size: int, most: int) -> list[int]:

@@ -213,6 +213,26 @@ def test_limits_and_other_methods_are_searched_by_optimise(way):
             assert it.evaluate(one.design, INDICES["load"], NORM).value <= 560.0 * (1.0 + 1e-6)
 
 
+def test_values_that_break_a_limit_with_real_inerters_are_infeasible():
+    """An ideal network keeps it by 0.3 %; whether an elastic shaft and friction do, its load says, evaluated alone."""
+    most, parallel, shaft = 561.0, Spring(120e3) | Damper(3e3), Spring(1e6) | Damper(3200.0)
+    design, limits = parallel | it.any_network(1, inerters=(100.0, 100.1)), [it.at_most(INDICES["load"], most)]
+    result = it.search(paper_quarter_car(design), INDICES["comfort"], NORM, subject_to=limits, starts=1)
+    method = it.StatisticalLinearisation()
+    (real,) = it.with_friction_and_elasticity(result.ranking, method, frictions=[1.0, 100.0])
+    inerter = it.Inerter(real.found.parameters["b1"])
+    broken = []
+    for arm, estimate in [
+        (inerter, real.elastic),
+        *((inerter | it.Friction(friction), own) for friction, own in real.with_friction.items()),
+    ]:
+        load = it.evaluate(paper_quarter_car(parallel | shaft - arm), INDICES["load"], method).value
+        broken.append(load > most)
+        assert (estimate.status.kind is it.StatusKind.INFEASIBLE) == broken[-1]
+        assert (f"{load:.1f}"[:5] in estimate.status.message) == broken[-1]
+    assert broken == [True, True, False]
+
+
 def test_a_network_that_cannot_keep_a_limit_is_not_ranked_and_says_so():
     limits = [it.at_most(INDICES["load"], 560.0)]  # which no damper alone keeps
     result = it.search(car(2, springs=None), INDICES["comfort"], NORM, subject_to=limits, starts=4)

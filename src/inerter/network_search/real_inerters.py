@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from inerter.errors import DesignError
+from inerter.errors import DesignError, worst_of
 from inerter.methods.composite_index import estimate_of
 from inerter.methods.method import Estimate, Method
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.elements import Damper, Element, Friction, Inerter, Network, Spring
+from inerter.optimisation.active_constraints import broken, constraints_at, with_limits
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.validation import is_number
 from inerter.vehicle.replace_values import with_elements
@@ -88,6 +89,16 @@ def _with_real_inerters(vehicle: Vehicle, found: FoundNetwork, real: RealInerter
     return with_elements(vehicle, change)
 
 
+def estimate_with_real_inerters(
+    found: FoundNetwork, method: Method, real: RealInerter, friction: float = 0.0
+) -> Estimate:
+    """The index of a network with real inerters, its values as they are; "infeasible" where they break a constraint."""
+    design, plan = with_real_inerters(found, real, friction), found.plan
+    held = constraints_at(design, plan.limits, method)
+    estimate = with_limits(estimate_of(design, plan.index, method), held)
+    return replace(estimate, status=worst_of((broken(held), estimate.status)))
+
+
 def optimise_with_real_inerters(
     found: FoundNetwork,
     method: Method,
@@ -128,7 +139,8 @@ def with_friction_and_elasticity(
 ) -> list[RealNetwork]:
     """The index of some networks of a search with real inerters, their values as they are.
 
-    `method` evaluates the designs with friction [N], the method of the search those without.
+    `method` evaluates the designs with friction [N], the method of the search those without. Where a design breaks a
+    constraint of the search, its status is "infeasible".
 
     Raises what `evaluate` raises, such as `DesignError` for a negative friction.
 
@@ -148,11 +160,8 @@ def with_friction_and_elasticity(
     return [
         RealNetwork(
             found,
-            estimate_of(with_real_inerters(found, shaft), found.plan.index, found.plan.method),
-            {
-                friction: estimate_of(with_real_inerters(found, shaft, friction), found.plan.index, method)
-                for friction in frictions
-            },
+            estimate_with_real_inerters(found, found.plan.method, shaft),
+            {friction: estimate_with_real_inerters(found, method, shaft, friction) for friction in frictions},
         )
         for found in several
     ]

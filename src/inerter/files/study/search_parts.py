@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from math import nan
 from typing import Any
 
-from inerter.errors import Status, StatusKind, worst_of
+from inerter.errors import Status, StatusKind
 from inerter.files.study import journal as journals
 from inerter.files.study.cases import Case, Outcome
 from inerter.files.study.limits import all_limits
@@ -20,10 +20,9 @@ from inerter.methods.registry import with_decisive_method
 from inerter.network_search.fronts import FrontPlan, FrontScale, FrontTask, NetworkPoints, front_group
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.network_search.plan import SearchPlan, search_group
-from inerter.network_search.real_inerters import optimise_with_real_inerters, with_real_inerters
+from inerter.network_search.real_inerters import estimate_with_real_inerters, optimise_with_real_inerters
 from inerter.network_search.results import FoundNetwork
 from inerter.networks.enumeration import Topology
-from inerter.optimisation.active_constraints import broken, constraints_at, with_limits
 from inerter.optimisation.optimise import Optimum, optimise
 from inerter.systems.descriptor import linear_notes
 
@@ -162,14 +161,12 @@ class RealPart(StudyPart["RealResult"]):
             return self._baseline(study, designs, method)
         assert study.real_inerters is not None
         real, friction = study.real_inerters.shaft, study.real_inerters.friction
-        plan, design = self.found.plan, with_real_inerters(self.found, real, friction)
-        held = constraints_at(design, plan.limits, method)
-        kept = with_limits(estimate_of(design, plan.index, method), held)
+        kept = estimate_with_real_inerters(self.found, method, real, friction)
         return self._result_of_search(
             optimise_with_real_inerters(self.found, method, friction=friction, real=real),
             kept=kept.value,
             kept_bound=kept.error_bound,
-            kept_doubt=with_decisive_method(worst_of((broken(held), kept.status)), self.method).doubt,
+            kept_doubt=with_decisive_method(kept.status, self.method).doubt,
         )
 
     def _baseline(self, study: Study, designs: Designs, method: Method) -> RealResult:

@@ -327,7 +327,7 @@ def test_values_that_nobody_has_chosen_are_optimised_from_the_verdict_and_taken(
     visitor.drawn()
     assert page.evaluate(HIDDEN) == 0  # the warning leaves room for the whole plot
     page.locator("#verdict").get_by_role("button", name="Values not chosen: optimise all layouts").click()
-    page.wait_for_selector(".notice:has-text('The best J1 of S1, S3')", timeout=120_000)
+    page.wait_for_selector("text=The values of S1 and S3 are the best found for J1.", timeout=120_000)
     visitor.chosen()
     visitor.settled()
     assert page.locator("#verdict .stale").count() == 0

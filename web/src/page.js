@@ -23,6 +23,7 @@ import { AllKeys, KeysOfFocus, isPressed, isTyped } from "./parts/keys.js";
 import { answerOf } from "./questions.js";
 import { open, studiesFirst } from "./remembering.js";
 import { isBlank } from "./state/document.js";
+import { messagesOf } from "./state/store.js";
 
 /** @import { Store } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -161,9 +162,9 @@ function useWork(api) {
 function Standing({ store, api }) {
   const state = store.get();
   const since = useWork(api);
-  const { connection, messages } = state;
+  const { connection } = state;
   const { is } = answerOf(state, "decision");
-  const count = messages.length + problemsOf(state).length;
+  const count = messagesOf(state).length + problemsOf(state).length;
   const lost = connection === "lost" || connection === "refused";
   const blank = isBlank(state.history.present);
   const ready = blank ? "ready" : STANDING[is];
@@ -181,7 +182,7 @@ const STANDING = { current: "answers are of this study", coming: "computing", no
  * @param {{store: Store, enter: (token: string) => void}} props */
 function Bar({ store, enter }) {
   const state = store.get();
-  const { connection, messages, about } = state;
+  const { connection, about } = state;
   const kernels = connection === "compiling" ? about?.kernels : null;
   const problems = otherProblems(state);
   return html`<div class="bar" aria-live="polite" data-connection=${connection}>
@@ -195,7 +196,7 @@ function Bar({ store, enter }) {
     ${problems.length > 0 && html`<div class="problems" role="alert"><b>In the study</b><ul>
       ${problems.map(({ place, sentence }) => html`<li class="problem">${isNamed(place.join("."), sentence) ? ""
         : html`<code>${place.join(".")}</code> `}${sentence}</li>`)}</ul></div>`}
-    ${messages.map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
+    ${messagesOf(state).map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
       ${offer && html`<button type="button" class="edged" onClick=${() => {
         store.dispatch({ type: "closed", about: key });
         offer.act();

@@ -6,7 +6,8 @@ import { showNewest } from "./parts/controls.js";
 import { doubted, isOk } from "./parts/doubts.js";
 import { questions, strutTexts } from "./questions.js";
 import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
-import { strutWords } from "./state/scale.js";
+import { listed, strutWords } from "./state/scale.js";
+import { TAKEN } from "./state/store.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -34,7 +35,7 @@ export async function optimise(store, api, asked) {
       const id = await begin(store, api, { kind: "optimise", ...body });
       void ended(store, id).then((job) => {
         if (job?.result && store.get().history.present.study === study)
-          void takeBest(job.result.designs).then((told) => store.say(told, "taken"));
+          void takeBest(job.result.designs).then((told) => store.say(told, TAKEN));
       });
       store.look({ tab: "work" });
       showNewest(".jobs .job");
@@ -69,12 +70,12 @@ export function takeOptima(store, designs, gesture = null, of = null) {
   const optima = Object.fromEntries(taken.map(({ best, values }) =>
     [best.layout, { problems: best.problem_digests ?? [], values }]));
   store.change({ type: "optimised", optima }, gesture);
-  return `${doubts}The best ${taken[0].best.index} of ${taken.map(({ best }) =>
-    best.layout + atBounds(best)).join(", ")}.`;
+  const names = listed(taken.map(({ best }) => best.layout + atBounds(best)));
+  return `${doubts}The values of ${names} are the best found for ${taken[0].best.index}.`;
 }
 
 /** The values of an optimum become the present ones, and a message tells it. @param {Store} store @param {any} best */
-export const takeAndTell = (store, best) => store.say(takeOptima(store, [best]), "taken");
+export const takeAndTell = (store, best) => store.say(takeOptima(store, [best]), TAKEN);
 
 /** What is told of optima, with what they become at other speeds: doubts first. @param {string} text
  * @param {{doubts: string[], others: string[]} | undefined} speeds */

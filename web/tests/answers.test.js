@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { unchosenIn } from "../src/library.js";
 import { answerOf, questions, soughtAnswer, soughtOf } from "../src/questions.js";
-import { initial, reduce } from "../src/state/store.js";
+import { TAKEN, initial, messagesOf, reduce, toldOfValues } from "../src/state/store.js";
 import { doubted, doubtsIn } from "../src/parts/doubts.js";
 import { takeFitted, takeOptima, withSpeeds } from "../src/working.js";
 import { indexAxis, indexName, indexWords, ownIndex, percentChange } from "../src/panels/answers.js";
@@ -248,7 +248,7 @@ test("only what is given is handed on: no withheld device, no values of another 
   assert.equal(store.get().history.present, before);
   const optimum = { layout: "S2", index: "J1", texts: { c: "1 N s/m" } };
   const broken = { ...optimum, status: { norm: "infeasible" }, message: "a limit is broken" };
-  const said = /^Unreliable: J1 of S2: infeasible: a limit is broken\. The best J1 of S2\.$/;
+  const said = /^Unreliable: J1 of S2: infeasible: a limit is broken\. The values of S2 are the best found for J1\.$/;
   assert.match(takeOptima(store, [broken]), said);
   const given = { status: "ok", parameters: { b: { value: 123, interval: [120, 125] } } };
   assert.match(await takeFitted(store, api, given, device), /^The device is in the new layout/);
@@ -257,10 +257,10 @@ test("only what is given is handed on: no withheld device, no values of another 
 
 test("what optima become at other speeds stands before them where it is doubtful", () => {
   assert.equal(
-    withSpeeds("The best J1 of S2.", { doubts: ["Not certain away from 90 km/h: x."], others: ["Also y."] }),
-    "Not certain away from 90 km/h: x. The best J1 of S2. Also y.",
+    withSpeeds("The values of S2 are the best found for J1.", { doubts: ["Not certain away from 90 km/h: x."], others: ["Also y."] }),
+    "Not certain away from 90 km/h: x. The values of S2 are the best found for J1. Also y.",
   );
-  assert.equal(withSpeeds("The best J1 of S2.", undefined), "The best J1 of S2.");
+  assert.equal(withSpeeds("The values of S2 are the best found for J1.", undefined), "The values of S2 are the best found for J1.");
 });
 
 test("the parts are those of the study that is open, also of one whose answer is still kept", async () => {
@@ -317,4 +317,15 @@ test("an index has its name beside its title unless that contains it, as in the 
   assert.equal(indexWords(ownIndex("ride-comfort"), ", "), "ride comfort");
   assert.deepEqual([indexName(words), indexWords(words, ": "), indexAxis(words.symbol, words.title)],
     Array(3).fill("suspension travel"));
+});
+
+test("what is told of values stands with them, while they are the present ones, and no other message does", () => {
+  const study = { layouts: { S1: "k" } };
+  let state = reduce(initial(), { type: "changed", change: { type: "opened", study }, gesture: null });
+  for (const [text, about] of [["first", "a"], ["taken", TAKEN], ["last", "b"]])
+    state = reduce(state, { type: "said", text, about });
+  assert.deepEqual(messagesOf(state).map(({ text }) => text), ["last", "first"]);
+  assert.equal(toldOfValues(state), "taken");
+  state = reduce(state, { type: "changed", change: { type: "placed", place: ["title"], value: "x" }, gesture: null });
+  assert.equal(toldOfValues(state), "");
 });

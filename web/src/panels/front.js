@@ -8,6 +8,7 @@ import { coloursOf } from "../plots/colours.js";
 import { baselineOf } from "../questions.js";
 import { own } from "../state/document.js";
 import { aligned, toPlaces, printed, scaled, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
+import { TAKEN } from "../state/store.js";
 import { takeOptima } from "../working.js";
 import { indexAxis, indexChoices, indicesOf, percentChange } from "./answers.js";
 import { Files } from "./files.js";
@@ -68,7 +69,7 @@ export function FrontResult({ store, api, job }) {
   const take = ({ front: { layout, problem_digests }, point: { texts, status, message } }) => {
     const gesture = Symbol("point");
     store.say(takeOptima(store, [{ layout, index: indices.map(({ index }) => index).join(" against "), texts, status,
-      message, problem_digests }], gesture), "taken");
+      message, problem_digests }], gesture), TAKEN);
     if (own(store.get().history.present.study.layouts, layout)) store.change({ type: "selected", layout }, gesture);
   };
   const { present } = store.get().history;

@@ -11,6 +11,7 @@ import { goalOf, strutTexts } from "../questions.js";
 import { entryAt, own, strutsOf, textOf } from "../state/document.js";
 import { aligned, withError, printed, scaled, shown, strutWords, times, unitFor, valuesIn, withUnit }
   from "../state/scale.js";
+import { TAKEN } from "../state/store.js";
 import { takeNetwork } from "../working.js";
 import { indexAxis, indicesOf, percentChange } from "./answers.js";
 import { Constraints } from "./asked.js";
@@ -156,7 +157,7 @@ export function SearchResult({ store, api, job }) {
   const [view, setView] = useChoice(views);
   const one = searches.find(({ index }) => index === view);
   /** @param {Row} row */
-  const take = (row) => store.say(takeNetwork(store, found, row), "taken");
+  const take = (row) => store.say(takeNetwork(store, found, row), TAKEN);
   /** @type {string[]} */
   const sentences = found.sentences ?? [];
   return html`${sentences.map((sentence) => html`<p key=${sentence}>${sentence}</p>`)}

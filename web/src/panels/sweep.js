@@ -7,6 +7,7 @@ import { numbersOf } from "../library.js";
 import { Plot } from "../plot.js";
 import { coloursOf } from "../plots/colours.js";
 import { printed, quantity, shown, times, unitFor, valuesIn, withUnit } from "../state/scale.js";
+import { TAKEN } from "../state/store.js";
 import { membersOf, takeOptima } from "../working.js";
 import { indexAxis, indicesOf } from "./answers.js";
 import { Files } from "./files.js";
@@ -123,14 +124,14 @@ function takeSwept(store, of, row) {
   const { present } = store.get().history;
   const number = numbersOf(store.get()).find(({ place }) => place === of.name);
   if (number === undefined || !(row.layout in (present.study.layouts ?? {})))
-    return store.say(`The open study has no layout ${row.layout} with ${of.name}; nothing was changed.`, "taken");
+    return store.say(`The open study has no layout ${row.layout} with ${of.name}; nothing was changed.`, TAKEN);
   const gesture = Symbol("sweep");
   const free = Object.keys(row.parameters ?? {}).length > 0;
   const told = free ? takeOptima(store, [row], gesture) : "";
-  if (free && store.get().history.present === present) return store.say(told, "taken");
+  if (free && store.get().history.present === present) return store.say(told, TAKEN);
   const { unit, factor } = of.written ?? { unit: of.unit, factor: 1 };
   const text = `${Number((row[of.name] / factor).toPrecision(15))} ${unit}`.trim();
   store.change({ type: "placed", place: number.path, value: text }, gesture);
   store.change({ type: "selected", layout: row.layout }, gesture);
-  return store.say(`${of.name} = ${text}. ${told}`.trim(), "taken");
+  return store.say(`${of.name} = ${text}. ${told}`.trim(), TAKEN);
 }

@@ -12,6 +12,7 @@ import { answerOf, bestOf, goalOf, isFitting, unitKey } from "../questions.js";
 import { entryAt, isRange, own } from "../state/document.js";
 import { STEPS, brief, briefIn, capital, completed, positionOf, printed, quantity, takenApart, valueAt }
   from "../state/scale.js";
+import { TAKEN, toldOfValues } from "../state/store.js";
 import { optimise } from "../working.js";
 
 /** @import { Store, State } from "../state/store.js" */
@@ -31,7 +32,7 @@ const [STEP, LARGE, FINE] = [0.01, 0.1, 0.001]; // by which an arrow key changes
 const ELEMENTS = "elements";
 const FEW = 8; // numbers of one table that stand below each other; more are folded away, and those in tables of tables
 const SHORT = 3; // letters of a name that leave the slider long
-const LONG = 15; // characters of a value that take the room of the check box too
+const LONG = 14; // characters of a value that take the room of the check box too, or are smaller where there is one
 
 /** @param {{store: Store, api: Api}} props */
 export function ValuesPanel({ store, api }) {
@@ -75,27 +76,27 @@ function FindBest({ store, api }) {
   const { study, layout } = state.history.present;
   const goal = goalOf(state);
   const all = Object.keys(study.layouts ?? {}).filter((name) => !isSearched(state, name));
-  const nothing = { text: "", of: null };
-  const [told, setTold] = useState(/** @type {{text: any, of: Document | null}} */ (nothing));
+  const [searched, setSearched] = useState(/** @type {Document | null} */ (null));
   const here = judging(state);
   const method = here?.searches ? here : quickMethod(state);
   const isMain = !isSearched(state, layout) && !isFitting(state);
   const ready = goal && method && all.length > 0;
   return html`<form class="optimise" onSubmit=${formHandler(async (_, { submitter }) => {
     if (!ready) return;
-    setTold({ text: html`<${Moving} what="Searching" />`, of: state.history.present });
+    setSearched(state.history.present);
     const layouts = submitter?.getAttribute("value") === "one" ? [layout] : all;
     const text = await optimise(store, api, { study, layouts,
       index: goal, method: method.name });
-    const { present } = store.get().history;
-    setTold(present.study === study ? { text, of: present } : nothing);
+    setSearched(null);
+    if (store.get().history.present.study === study) store.say(text, TAKEN);
   })}>
     <div class="head"><h2 id="values-title">Values</h2>
       ${all.length > 1 && all.includes(layout) && html`<button value="one" disabled=${!ready}
         title="The others keep their values">Only ${shortLabel(layout)}</button>`}
       <button class=${isMain ? "main" : ""} id="find-best" disabled=${!ready}
         title="Of all layouts, so that they are compared at their best">Find best <kbd>O</kbd></button></div>
-    <p role="status">${told.of === state.history.present && told.text}</p>
+    <p role="status">${searched === state.history.present ? html`<${Moving} what="Searching" />`
+      : toldOfValues(state)}</p>
   </form>`;
 }
 
@@ -225,7 +226,7 @@ function AmountRow({ store, amount, wide, chosen, lit }) {
     event.preventDefault();
   };
   const told = named ? `class ${named}` : free ? briefIn(state.about, text, unit) : brief(text, state.about, unit);
-  const classes = ["amount", wide && "wide", !row.may_be_free && told.length > LONG && "long", free && "free",
+  const classes = ["amount", wide && "wide", told.length > LONG && "long", free && "free",
     (chosen || lit) && "chosen"].filter(Boolean);
   const light = (/** @type {string | null} */ element) => () => store.dispatch({ type: "lit", name: element });
   const found = best === undefined ? null : sizeOf(state, best, unit);

@@ -182,4 +182,7 @@ export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 export const withUnit = (what, unit) => (unit ? `${what} [${printed(unit)}]` : what);
 
 /** Struts in words. @param {(string | null)[]} struts */
-export const strutWords = (struts) => struts.join(" and ").replaceAll("_", " ");
+export const strutWords = (struts) => listed(struts).replaceAll("_", " ");
+
+/** Names as a sentence lists them. @param {(string | null)[]} names */
+export const listed = (names) => [names.slice(0, -1).join(", "), ...names.slice(-1)].filter(Boolean).join(" and ");

@@ -13,9 +13,10 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** @import { Typed } from "../entering.js" */
 /** @import { Gesture } from "./history.js" */
 /** @typedef {import("./history.js").History<Document>} DocumentHistory */
-/** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does.
+/** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does,
+ * `of` the document to which it was said.
  * @typedef {{label: string, act: () => void}} Offer */
-/** @typedef {{about: string, text: string, offer?: Offer}} Message */
+/** @typedef {{about: string, text: string, of: Document, offer?: Offer}} Message */
 /** @typedef {{id: string, kind: string, title: string, study: string,
  * state: "waiting" | "running" | "done" | "stopped" | "failed", begun: number | null, share: number | null,
  * sentence: string | null, found?: any, result: any}} Job  `study`: its title; `begun`: in seconds since 1970, by the
@@ -81,6 +82,16 @@ export const initial = () => ({
 });
 
 const MOST = 5; // messages that stand below each other
+
+/** What messages on values that were taken are about: they stand with the values, as long as these are present. */
+export const TAKEN = "taken";
+
+/** Messages of the whole page, newest first. @param {State} state */
+export const messagesOf = ({ messages }) => messages.filter(({ about }) => about !== TAKEN).toReversed();
+
+/** What is told of the present values. @param {State} state */
+export const toldOfValues = ({ messages, history: { present } }) =>
+  messages.find(({ about, of }) => about === TAKEN && of === present)?.text ?? "";
 const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another study
 
 /** The state with another document in it: nothing that was said or answered of the one before is about it.
@@ -126,7 +137,8 @@ const STEPS = {
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
   said: (state, { text, about = text, offer }) =>
-    ({ ...state, messages: [...others(state, about), { about, text, ...(offer ? { offer } : {}) }].slice(-MOST) }),
+    ({ ...state, messages: [...others(state, about), { about, text, of: state.history.present,
+      ...(offer ? { offer } : {}) }].slice(-MOST) }),
   closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
   typed: (state, { typed }) => ({ ...state, typed: [...state.typed.filter(({ id }) => id !== typed.id), typed],
     answers: without(state.answers, panelOf(typed)) }),

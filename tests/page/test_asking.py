@@ -174,7 +174,9 @@ def test_what_is_made_free_can_be_optimised(visitor: Visitor, tmp_path: Path) ->
     assert page.locator(".problem").count() == 0
     assert visitor.values() == before
     page.get_by_role("button", name="Find best").click()
-    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    page.wait_for_function(
+        "() => document.querySelector('.optimise [role=status]').textContent.startsWith('The values of')"
+    )
     assert visitor.values()["J1"] < before["J1"]
     path = visitor.download("Study file", tmp_path)
     assert tomllib.loads(path.read_text())["study"]["optimise"] == "norm"
@@ -231,7 +233,9 @@ def test_indices_and_limits_are_chosen_in_the_page(visitor: Visitor, tmp_path: P
     entry.press("Enter")
     page.wait_for_function("() => document.querySelectorAll('.limits li').length === 2")
     page.get_by_role("button", name="Find best").click()
-    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    page.wait_for_function(
+        "() => document.querySelector('.optimise [role=status]').textContent.startsWith('The values of')"
+    )
     page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 2")
     study = tomllib.loads(visitor.download("Study file", tmp_path).read_text())["study"]
     assert study["indices"] == ["J1", "J3"]

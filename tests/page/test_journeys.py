@@ -95,7 +95,9 @@ def _built_compared_and_undone(
     visitor.wait_for_text("k | c")
     visitor.settled()
     build(visitor)
-    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    page.wait_for_function(
+        "() => document.querySelector('.optimise [role=status]').textContent.startsWith('The values of')"
+    )
     assert visitor.text == "k | c - b"
     optimum = visitor.values()
 

@@ -110,7 +110,9 @@ def test_an_own_car_from_the_first_screen_to_the_report(
     page.keyboard.press("Escape")
 
     person.press(page.get_by_role("button", name="Find best"))
-    page.wait_for_function("() => document.querySelector('.optimise [role=status]').textContent.startsWith('The best')")
+    page.wait_for_function(
+        "() => document.querySelector('.optimise [role=status]').textContent.startsWith('The values of')"
+    )
     page.wait_for_function("() => document.querySelectorAll('.limits .good').length === 1")
     best = visitor.values()
 

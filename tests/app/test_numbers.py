@@ -112,6 +112,22 @@ def test_optima_are_those_of_a_run(client: TestClient, ran: Any) -> None:
         assert (result["value"], result["improvement_percent"]) == (case["value"], case["improvement_percent"])
 
 
+def test_what_takes_longer_than_a_person_waits_is_not_optimised(client: TestClient) -> None:
+    """Of a small vehicle the optima are those without the wish; a free network is left out."""
+    small = ask(client, "panel/optimise", study=DOCUMENT, indices=["J1"])
+    assert ask(client, "panel/optimise", study=DOCUMENT, indices=["J1"], while_waiting=True) == small
+    large = tomllib.loads((EXAMPLES / "full-car.toml").read_text())
+    assert ask(client, "panel/optimise", study=large, while_waiting=True)["designs"] is None
+    settings = {key: value for key, value in DOCUMENT["study"].items() if key != "optimise"}
+    fixed = {**changed(elements={"c": "1 kN s/m", "b": "30 kg"}), "study": settings}
+    assert ask(client, "panel/optimise", study=fixed, while_waiting=True)["designs"] == []
+    searched = tomllib.loads((EXAMPLES / "search_quarter_car.toml").read_text())
+    asked = {"study": searched, "layouts": list(searched["layouts"]), "indices": ["J1"], "while_waiting": True}
+    told = ask(client, "panel/optimise", **asked)
+    assert {design["layout"] for design in told["designs"]} == {"S1", "S3"}
+    assert [one["layout"] for one in told["left_out"]] == ["any"]
+
+
 @pytest.mark.parametrize("layouts", [["S1", "S3"], ["S3"]], ids=["both", "one"])
 def test_an_optimum_tells_what_it_becomes_at_other_speeds_as_a_run_does(
     client: TestClient, tmp_path: Path, layouts: list[str]

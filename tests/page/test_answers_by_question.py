@@ -267,6 +267,17 @@ def test_a_study_that_is_changed_before_its_first_optimum_begins_at_that_of_what
     assert page.locator("#verdict .stale").count() == 0
 
 
+def test_the_first_optimum_is_asked_before_anything_is_drawn(served: Served, visitors: Callable[..., Visitor]) -> None:
+    """Nothing that is asked of the study comes before it: the server optimises while the page is drawn."""
+    visitor, asked = visitors(served), list[str]()
+    visitor.page.on("request", lambda request: asked.append(request.url.rpartition("/api/")[2]))
+    visitor.visit()
+    visitor.chosen()
+    of_study = [path for path in asked if path.startswith(("panel/", "study/"))]
+    assert of_study[0] == "panel/optimise"
+    assert of_study.count("study/parts") == 1
+
+
 def test_a_page_that_is_reloaded_before_its_first_optimum_begins_at_it_too(
     served: Served, visitors: Callable[..., Visitor]
 ) -> None:

@@ -199,7 +199,7 @@ def test_a_button_that_is_pressed_while_a_study_is_being_opened_does_what_it_say
 ) -> None:
     """The message that the study is open comes while it is pressed, and would move it away from the pointer."""
     page = visitor.page
-    held = HeldRequests(visitor, "**/api/panel/mechanism")
+    held = HeldRequests(visitor, "**/api/panel/optimise")
     visitor.open(searchable)
     button = page.get_by_role("button", name="Search for the best network")
     place = button.bounding_box()
@@ -218,7 +218,7 @@ def test_a_button_that_is_pressed_while_a_study_is_being_opened_does_what_it_say
 def test_another_button_of_the_mouse_holds_nothing_back(visitor: Visitor, searchable: Path) -> None:
     """Its release may go to a menu of the browser, and never come."""
     page = visitor.page
-    held = HeldRequests(visitor, "**/api/panel/mechanism")
+    held = HeldRequests(visitor, "**/api/panel/optimise")
     visitor.open(searchable)
     page.get_by_role("button", name="Search for the best network").hover()
     page.mouse.down(button="right")

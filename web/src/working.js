@@ -13,7 +13,6 @@ import { TAKEN } from "./state/store.js";
 /** @import { Api } from "./api.js" */
 /** @import { Gesture } from "./state/history.js" */
 
-const SMALL = 4; // coordinates of a vehicle whose best values are found by norms while one waits
 const AGAIN = 1000; // [ms] until a server that does not answer is asked again
 const LOOK = 300; // [ms] between two looks at work that goes on
 
@@ -31,7 +30,9 @@ export async function optimise(store, api, asked) {
     return told;
   };
   try {
-    if (!isQuick(methodOf(store.get(), method)) || !(await isSmall(api, study, layouts[0]))) {
+    const quick = isQuick(methodOf(store.get(), method));
+    const { designs, at_speeds: speeds } = quick ? await whileWaiting(api, "optimise", body) : NONE;
+    if (designs === null) {
       const id = await begin(store, api, { kind: "optimise", ...body });
       void ended(store, id).then((job) => {
         if (job?.result && store.get().history.present.study === study)
@@ -41,7 +42,6 @@ export async function optimise(store, api, asked) {
       showNewest(".jobs .job");
       return "Under way: see Jobs. The values are taken when it is done, unless the study changes meanwhile.";
     }
-    const { designs, at_speeds: speeds } = await postNow(api, "panel/optimise", "optimise", body);
     if (store.get().history.present.study !== study)
       return "The study was changed meanwhile, and the values are not taken. Press Find best again.";
     return withSpeeds(await takeBest(designs), speeds);
@@ -123,15 +123,18 @@ export async function beginAtBest(store, api, gesture, selects = false) {
   if (!index || !method) return;
   store.dispatch({ type: "choosing", study });
   try {
-    const { designs, isDecided } = await untilFound(() => bestAtFirst(api, study, index, method));
+    const layouts = Object.keys(study.layouts ?? {});
+    const body = { study, layouts, indices: [index], method, methods: [method] };
+    const { designs, left_out: others } = await untilFound(() => whileWaiting(api, "opening", body));
     const { present } = store.get().history;
-    const open = designs.filter(({ layout }) => own(present.values, layout) === undefined); // nobody has chosen those
+    const open = (designs ?? []).filter((each) => own(present.values, each.layout) === undefined); // nobody chose those
     if (open.length > 0 && present.study === study) {
       takeOptima(store, open, gesture, study);
       const doubts = doubted(open.flatMap(membersOf));
       if (doubts) store.say(doubts.trim());
     }
-    if (selects && isDecided && present.layout === layout) await selectBest(store, api, gesture);
+    const isAll = layouts.length > 1 && !others; // of which the verdict is
+    if (selects && designs && isAll && present.layout === layout) await selectBest(store, api, gesture);
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   } finally {
@@ -155,21 +158,13 @@ async function selectBest(store, api, gesture) {
   if (rank === 1 && store.get().history.present === present) store.change({ type: "selected", layout }, gesture);
 }
 
-/** The best designs of all layouts; none where nothing is free, or where they take longer than a person waits. And
- * whether the verdict is about all layouts then. @param {Api} api @param {any} study @param {string} index
- * @param {string} method @returns {Promise<{designs: any[], isDecided: boolean}>} */
-async function bestAtFirst(api, study, index, method) {
-  const [first] = Object.keys(study.layouts ?? {});
-  const [parts, small] = await Promise.all([api.post("study/parts", { study }),
-    isSmall(api, study, first).catch(() => null)]); // null where its network is free
-  const layouts = Object.keys(parts.layouts).filter((name) => parts.layouts[name].free_networks.length === 0);
-  const isDecided = layouts.length > 1 && layouts.length === Object.keys(parts.layouts).length;
-  if (layouts.every((name) => parts.layouts[name].free.length === 0)) return { designs: [], isDecided };
-  if (!(small ?? await isSmall(api, study, layouts[0]))) return { designs: [], isDecided: false };
-  const body = { study, layouts, indices: [index], method, methods: [method] };
-  const { designs } = await postNow(api, "panel/optimise", "opening", body);
-  return { designs, isDecided };
-}
+/** Optima, where these come while one waits; `designs` is null where they take longer. @param {Api} api
+ * @param {string} name @param {object} body @returns {Promise<{designs: any[] | null, at_speeds?: any,
+ * left_out?: object[]}>} */
+const whileWaiting = (api, name, body) => postNow(api, "panel/optimise", name, { ...body, while_waiting: true });
+
+/** @type {Awaited<ReturnType<typeof whileWaiting>>} */
+const NONE = { designs: null };
 
 const TRIES = 5; // of a server that does not answer, a second apart
 
@@ -184,12 +179,6 @@ async function untilFound(find) {
       await new Promise((resolve) => setTimeout(resolve, AGAIN));
     }
   }
-}
-
-/** @param {Api} api @param {any} study @param {string} layout */
-async function isSmall(api, study, layout) {
-  const { coordinates } = await postNow(api, "panel/mechanism", "size", { study, layout });
-  return coordinates.length <= SMALL;
 }
 
 /** A network that a search found takes the place of the free network in its layout; returns what to tell.

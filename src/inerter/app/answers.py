@@ -46,6 +46,7 @@ Answer = dict[str, Any]
 
 _MOST_DESIGNS = 10_000  # that are judged for a scatter while one waits, and a quarter of them by a method that iterates
 _SAMPLES = 64, 1024  # of a scatter: fewest and most
+_MOST_COORDINATES = 4  # of a vehicle whose optima are found by norms while one waits
 
 
 def first() -> None:
@@ -178,7 +179,16 @@ def optimum(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
     """Best design of each layout for each requested index, found and evaluated as in a study.
 
     With it, in the sentences of its report, what the best become at other speeds, first what makes them doubtful.
+    `while_waiting` asks for nothing that takes longer than a person waits: `designs` is None of a large vehicle, and
+    empty where no value is free.
     """
+    layouts = tuple(body.get("layouts") or study.layouts)
+    if body.get("while_waiting"):
+        designs = [one_design(study, {"layout": layout}) for layout in layouts]
+        if not any(design.free for design in designs):
+            return {"designs": []}
+        if len(designs[0].mechanism.coordinates) > _MOST_COORDINATES:
+            return {"designs": None}
     wanted = tuple(body.get("indices") or study.indices)
     asked = replace(
         study,
@@ -187,7 +197,6 @@ def optimum(study: Study, body: Body, tell: Tell = report_nothing) -> Answer:
         evaluate=tuple(body.get("methods") or study.evaluate),
         sweeps=(),
     )
-    layouts = tuple(body.get("layouts") or study.layouts)
     for layout in layouts:
         study.design(layout)
     for name in asked.methods:

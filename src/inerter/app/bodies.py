@@ -129,6 +129,7 @@ class PanelRequest(OfDesigns):
     samples: Annotated[int, Field(ge=2, le=65536)] | None = None
     outputs: list[Name] = []
     output: Annotated[Name, Field(description="The only output in the answer; default: the first.")] = ""
+    while_waiting: Annotated[bool, Field(description="Optimise only what comes while a person waits.")] = False
 
 
 class WorkRequest(OfDesigns):

@@ -11,7 +11,7 @@ import pytest
 from campaigns import sampled
 from folders import EXAMPLES
 from study_text import load_text
-from synthetic import LONG, a_map, designs, judged, limited, sweep, terminal_text
+from synthetic import LONG, a_map, designs, judged, limited, sweep, terminal_text, with_value
 
 import inerter as it
 from inerter.figures.study import study_figures
@@ -379,3 +379,13 @@ def test_a_roughness_that_was_measured_has_no_more_digits_than_it_bears(study, r
     assert digits
     assert len(digits[0].replace(".", "")) == 4
     assert float(digits[0]) == pytest.approx(roughness / 10 ** math.floor(math.log10(roughness)), rel=1e-3)
+
+
+def test_a_missing_value_of_another_index_has_its_reason(study, tmp_path):
+    """An index that fails says why in the table of the designs that are best for another one too."""
+    results = with_value(designs(), np.nan, "failed: no amplitude", layout="S2", index="J5")
+    results["other_value"].loc[{"layout": "S2", "other": "J5"}] = np.nan
+    for table in trade_off_tables(results):
+        assert [row.status for row in table.rows] == ["", "J5: failed: no amplitude", ""]
+    page = report(StudyContents(results, study), tmp_path)
+    assert page.count("J5: failed: no amplitude") == 3  # of designs that are best for J1, for J3 and for itself

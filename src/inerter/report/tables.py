@@ -138,7 +138,9 @@ def _trade_off_table(results: xr.Dataset, index: str) -> Table:
             Cell(_other(results, design.sel(other=other), other), missed * (other == index), strong=other == index)
             for other in others
         ]
-        rows.append(Row([Cell(name), *cells]))
+        missing = [other for other in others if np.isnan(design["other_value"].sel(other=other).item())]
+        reasons = {other: problem_of(str(results["status"].sel(layout=name, index=other).item())) for other in missing}
+        rows.append(Row([Cell(name), *cells], status="; ".join(f"{o}: {why}" for o, why in reasons.items() if why)))
     caption = f"Designs that are best for {index_words(results, index)}{by_which(results)}"
     return Table(caption, columns("Layout", *others), rows)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -67,3 +68,20 @@ def test_a_declared_number_is_everywhere(tmp_path: Path, monkeypatch: pytest.Mon
     for value in data["number.sink.value"].sel(index="J1").values:
         assert f"{value * 1e6:.2f} um/N" in text
     assert "failed: no such number" in text
+
+
+def test_a_journal_without_a_number_or_with_another_one_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As of a run before the number was declared: it is missing, and one that is declared no longer is left out."""
+    path = tmp_path / "study.toml"
+    path.write_text(study_text('indices = ["J1"]'), encoding="utf-8")
+    study = load_study(path)
+    former = {"gone": {"value": 1.0, "error_bound": 0.0, "status": "ok"}}
+    outcomes = {case: replace(run_case(study, case), numbers=former) for case in cases(study)}
+    monkeypatch.setitem(DESIGN_NUMBERS, "sink", DesignNumber("Sink", "body displacement under load", "m/N", peak))
+    data = dataset(study, outcomes)
+    assert "number.gone.value" not in data
+    assert bool(data["number.sink.value"].isnull().all())
+    assert set(data["number.sink.status"].values.ravel()) == {"missing"}
+    assert "missing" in " ".join(table_lines(design_tables(data)[0]))

@@ -44,7 +44,7 @@ class DesignNumber:
     def variables(self) -> dict[str, tuple[tuple[str, ...], float | str, str]]:
         """Further dimensions, empty value and long name of each variable in results, by the end of its name."""
         bound, status = f"{self.words}, largest relative error", f"{self.words}, status"
-        return dict(zip(ENDS, (((), nan, self.words), ((), nan, bound), ((), "", status)), strict=True))
+        return dict(zip(ENDS, (((), nan, self.words), ((), nan, bound), ((), "missing", status)), strict=True))
 
 
 DESIGN_NUMBERS: dict[str, DesignNumber] = {}  # by name

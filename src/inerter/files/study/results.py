@@ -93,8 +93,8 @@ class DatasetBuilder:
         for i, found in enumerate(outcome.limits):
             for name, number_told in zip(LIMITED, found, strict=True):
                 arrays[name][number, i] = number_told
-        for name, entry in outcome.numbers.items():
-            for end, content in entry.items():
+        for name in DESIGN_NUMBERS:
+            for end, content in outcome.numbers.get(name, {}).items():
                 arrays[f"{NUMBER}{name}.{end}"][number] = content
         if not self.study.sweeps:
             self.designs[case] = outcome

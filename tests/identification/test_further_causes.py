@@ -105,6 +105,23 @@ def test_a_delay_is_no_difference_of_clocks_too() -> None:
     assert Suspect.CLOCK_DRIFT not in names
 
 
+AVERAGED = [(25, 0, "is a moving average over"), (31, 15, "is a moving average over"), (1, 40, "is delayed by")]
+
+
+@pytest.mark.parametrize(("count", "late", "said"), sampled(AVERAGED, AVERAGED[1:]))
+def test_a_force_that_a_recorder_averages_or_sends_late_is_named(count: int, late: int, said: str) -> None:
+    """Samples of 1 ms. A mean is no filter of second order, and a delay beyond 20 ms was called one of 12 Hz."""
+    record = it.VirtualRig(it.Inerter(33.0) | it.Friction(26.0), force_bandwidth=150.0).run(it.cosine(2e-3, 1.4), 2.0)
+    padded = np.pad(record.force, (count // 2 + late, count // 2), "edge")
+    mean = np.convolve(padded, np.ones(count) / count, "valid")[: record.time.size]
+    found, _ = explained(quick_fit(record.with_notes(force=mean), MODELS["friction"], {"b": 33.0, "f": 26.0}))
+    assert found[0].sentence.startswith(f"the force {said} ")
+    assert found[0].details["time"] == pytest.approx(1e-3 * count, abs=5e-4)
+    assert found[0].details["delay"] == pytest.approx(1e-3 * late, abs=5e-4)
+    for name, true in (("b", 33.0), ("f", 26.0)):
+        assert found[0].estimates[name][0] == pytest.approx(true, rel=0.01)
+
+
 @pytest.mark.campaign
 def test_a_wrongly_stated_bandwidth_of_the_load_cell_is_named_first() -> None:
     """A clock that drifts, with a delay at first, explained more of it than another filter of the samples."""

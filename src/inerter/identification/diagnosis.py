@@ -52,6 +52,7 @@ _SEEN, _SURE = 0.1, 30.0  # of a residual that noise may hide: share that is exp
 _CLEAR = 20.0  # Fisher's ratio of a nonlinear load cell
 _LIKE = 0.5  # of the share of the best explanation of such a residual: another one
 _OF_SENSORS = (Suspect.FILTERED_FORCE, Suspect.ASYMMETRIC_GAIN, Suspect.NONLINEAR_GAIN)  # like a law of the device
+_DELAYED = (Suspect.CLOCK_DRIFT, Suspect.AVERAGED_FORCE)  # with a delay of their own
 _SHAFTS = (Suspect.ELASTIC, Suspect.RIGID, Suspect.BACKLASH)  # a stiff one also changes the errors of the simulation
 _UNITS = (  # column of the powers of scales, channel, true unit, unit as read, true value over reading
     (0, "force", "kN", "N", 1e3),
@@ -180,8 +181,8 @@ def _rank(every: Sequence[Explanation], hidden: HiddenCause) -> list[Explanation
             found[e.name] = e
     ranked = sorted(found.values(), key=_likelihood)
     names = [e.name for e in ranked]
-    # Clocks that differ may have begun apart: they are no other cause than a delay that explains as much.
-    ranked = [e for i, e in enumerate(ranked) if e.name is not Suspect.CLOCK_DRIFT or Suspect.DELAY not in names[:i]]
+    # Clocks that differ may have begun apart, and an average may be late: a delay that explains as much is both.
+    ranked = [e for i, e in enumerate(ranked) if e.name not in _DELAYED or Suspect.DELAY not in names[:i]]
     if hidden is HiddenCause.NONE or not ranked:
         return ranked
     if ranked[0].name is Suspect.FILTERED_FORCE:  # in place of a delay: intervals contain its values already

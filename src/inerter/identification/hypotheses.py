@@ -122,6 +122,34 @@ def filtered_force() -> Hypothesis:
     return Hypothesis(Suspect.FILTERED_FORCE, (unknown,), read=read, details=lambda values: {"time": values[name]})
 
 
+def averaged_force() -> Hypothesis:
+    """Hypothesis of a force that is a moving average, which may be late by more than is searched otherwise."""
+    length, late = Unknown("averaged time", "s", 0.0, 0.2, 5e-3), Unknown("delay of the average", "s", -0.1, 0.1, 5e-3)
+
+    def read(force: Matrix, e: Experiment, values: Values) -> Matrix:
+        time = np.asarray(e.record.interval * np.arange(force.size), dtype=np.float64)
+        width = max(values[length.name], 0.5 * e.record.interval)
+        sums = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]))]) * e.record.interval
+        ends = (time - values[late.name] + sign * 0.5 * width for sign in (1.0, -1.0))
+        after, before = (_extended(end, time, sums, force) for end in ends)
+        return np.asarray((after - before) / width)
+
+    starts = tuple({length.name: time} for time in (5e-3, 25e-3))
+    return Hypothesis(
+        Suspect.AVERAGED_FORCE,
+        (length, late),
+        read=read,
+        details=lambda values: {"time": values[length.name], "delay": values[late.name] + values.get(DELAY, 0.0)},
+        starts=starts,
+    )
+
+
+def _extended(at: Matrix, time: Matrix, sums: Matrix, force: Matrix) -> Matrix:
+    """The integral of the force at any times, of which it keeps its first and last value before and after."""
+    inside = np.interp(at, time, sums)
+    return np.asarray(inside + np.minimum(at - time[0], 0.0) * force[0] + np.maximum(at - time[-1], 0.0) * force[-1])
+
+
 def load_cell(stated: float | None = None) -> Hypothesis:
     """Hypothesis of a load cell whose bandwidth the records do not state, or not rightly, as a part of the rig.
 
@@ -179,6 +207,7 @@ def sensor_hypotheses(offset: bool) -> list[Hypothesis]:
         filtered_displacement(1),
         filtered_displacement(2),
         filtered_force(),
+        averaged_force(),
         drift(),
         fixture(),
     ]

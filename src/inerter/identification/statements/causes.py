@@ -11,11 +11,19 @@ from inerter.formatting import format_alike, format_number, format_quantity, for
 from inerter.records.remedy import Action, Remedy, Text
 
 Details = Mapping[str, Any]
+_SHORT_AVERAGE = 0.1  # of a delay: an average over less is that delay alone
 
 
 def _delay_text(d: Details) -> str:
     late = "force" if d["delay"] > 0.0 else "displacement"
     return f"the {late} is delayed by {format_quantity(abs(d['delay']), 's', 3)}"
+
+
+def _averaged_force_text(d: Details) -> str:
+    if d["time"] < _SHORT_AVERAGE * abs(d["delay"]):
+        return _delay_text(d)
+    late = f"{'late' if d['delay'] > 0.0 else 'early'} by {format_quantity(abs(d['delay']), 's', 3)}"
+    return f"the force is a moving average over {format_quantity(d['time'], 's', 3)}, {late}"
 
 
 def _corner_frequency_text(d: Details) -> str:
@@ -167,6 +175,12 @@ class Suspect(StrEnum):
         "filtered force",
         _filtered_force_text,
         ("state the bandwidth of the load cell and its amplifier, ", Remedy(Action.FORCE_BANDWIDTH)),
+    )
+    AVERAGED_FORCE = (
+        "averaged force",
+        _averaged_force_text,
+        "record the force without averaging and by the clock of the displacement, or remove a delay, "
+        "shift_force(record, delay)",
     )
     DRIFT = (
         "drift",

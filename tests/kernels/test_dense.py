@@ -151,7 +151,14 @@ def test_eigenvectors_diagonalise() -> None:
         assert good
         tolerance = 1e3 * EPS * np.linalg.cond(vectors) * np.abs(A).sum()
         np.testing.assert_allclose(vectors * values @ inverse, A, rtol=0.0, atol=tolerance)
-    assert not dense.eigenvectors(np.full((2, 2), np.inf + 0j))[3]
+        first = np.flatnonzero(values.imag > 0.0)  # of each pair: both have the same digits
+        np.testing.assert_array_equal(values[first].conj(), values[first + 1])
+        np.testing.assert_array_equal(vectors[:, first].conj(), vectors[:, first + 1])
+        np.testing.assert_array_equal(inverse[first].conj(), inverse[first + 1])
+    values, _, _, good = dense.eigenvectors(np.full((2, 2), np.inf))
+    assert not good
+    assert np.isnan(values).all()
+    assert dense.eigenvectors(np.zeros((0, 0)))[3]
 
 
 @pytest.mark.parametrize("adjoint", [False, True])

@@ -13,6 +13,7 @@ import numpy as np
 
 from inerter.kernels.arrays import Array, Floats, Ints, Matrix
 from inerter.kernels.decorators import part
+from inerter.kernels.eigenproblem import real_eigenvectors
 
 RANK_TOLERANCE = 1e-9  # rows are scaled to one
 ROUNDING = 1e-14  # of a sum, relative to its terms
@@ -499,8 +500,8 @@ def apply_resolvent_transposed(M: Array, pivots: Array, scale: Array, x: Array) 
 
 @part()
 def in_units(A: Array, scale: Array) -> Array:
-    """A with the states in units of `scale`, complex: eigenvalues and eigenvectors of a real matrix are."""
-    scaled = np.empty(A.shape, np.complex128)
+    """A with the states in units of `scale`."""
+    scaled = np.empty(A.shape)
     for i in range(A.shape[0]):
         for j in range(A.shape[0]):
             scaled[i, j] = A[i, j] * scale[j] / scale[i]
@@ -509,21 +510,37 @@ def in_units(A: Array, scale: Array) -> Array:
 
 @part()
 def eigenvectors(matrix: Array) -> Any:
-    """Eigenvalues, eigenvectors as columns, the inverse of their matrix, and whether there is one."""
+    """Eigenvalues of a real matrix, eigenvectors as columns, the inverse of their matrix, and whether there is one.
+
+    The real and the imaginary part of the eigenvector of a conjugate pair are columns of a real matrix, whose inverse
+    has those of the pair. Eigenvalues that LAPACK does not find are nan.
+    """
     n = matrix.shape[0]
-    inverse, pivots, largest = np.zeros((n, n), np.complex128), np.empty(n, np.int64), 0.0
+    values, real, imaginary = np.full(n, np.nan + 0j), np.empty(n), np.empty(n)
+    vectors, inverse = np.zeros((n, n), np.complex128), np.zeros((n, n), np.complex128)
+    columns, rows, solved = np.empty((n, n)), np.empty((n, n)), np.zeros((n, n))
+    pivots, largest = np.empty(n, np.int64), 0.0
     for i in range(n):
         for j in range(n):
+            columns[j, i] = matrix[i, j]
             largest += abs(matrix[i, j])
-    if not largest < np.inf:
-        return np.zeros(0, np.complex128), inverse, inverse, False
-    values, vectors = np.linalg.eig(matrix)
-    LU = vectors.copy()
-    if not factor(LU, pivots):
+    if n == 0 or not largest < np.inf or real_eigenvectors(columns, real, imaginary, rows) != 0:
+        return values, vectors, inverse, n == 0
+    for k in range(n):
+        values[k] = complex(real[k], imaginary[k])
+        solved[k, k] = 1.0
+        for i in range(n):
+            columns[i, k] = rows[k, i]
+    if not factor(columns, pivots):
         return values, vectors, inverse, False
-    for i in range(n):
-        inverse[i, i] = 1.0
-    solve_rows(LU, pivots, inverse)
+    solve_rows(columns, pivots, solved)
+    for k in range(n):
+        sign = 1.0 if imaginary[k] > 0.0 else -1.0 if imaginary[k] < 0.0 else 0.0
+        first, second = k - 1 if sign < 0.0 else k, k + 1 if sign > 0.0 else k
+        share = 0.5 if sign != 0.0 else 1.0
+        for i in range(n):
+            vectors[i, k] = complex(rows[first, i], sign * rows[second, i])
+            inverse[k, i] = share * complex(solved[first, i], -sign * solved[second, i])
     return values, vectors, inverse, True
 
 

@@ -125,10 +125,13 @@ def partial_fractions(system: Array, remainder_A: Array, scale: Array) -> Any:
 @part()
 def modal_gain(poles: Array, residues: Array, direct: float, omega: float) -> float:
     """|G(j omega)| from partial fractions."""
-    G = direct + 0j
+    real, imaginary = direct, 0.0
     for i in range(poles.size):
-        G += residues[i] / (1j * omega - poles[i])
-    return abs(G)
+        decay, apart = -poles[i].real, omega - poles[i].imag
+        size = decay * decay + apart * apart
+        real += (residues[i].real * decay + residues[i].imag * apart) / size
+        imaginary += (residues[i].imag * decay - residues[i].real * apart) / size
+    return float(np.sqrt(real * real + imaginary * imaginary))
 
 
 @part()

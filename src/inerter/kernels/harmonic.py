@@ -12,7 +12,15 @@ import numpy as np
 
 from inerter.kernels.close_descriptor import DESCRIPTOR, close
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.dense import balancing_units, factor, factor_resolvent, in_units, solve, solve_rows
+from inerter.kernels.dense import (
+    balancing_units,
+    eigenvectors,
+    factor,
+    factor_resolvent,
+    in_units,
+    solve,
+    solve_rows,
+)
 from inerter.kernels.gain import frequencies, largest_pole, merge, sort
 
 Array = Any
@@ -271,7 +279,7 @@ def grid_of(row: Array, dampers: Array, reference: float, descriptor: Array) -> 
         A, _, _, _, _, _, good = close(point, descriptor)
         if not good:
             continue
-        poles = np.linalg.eigvals(in_units(A, balancing_units(A)))
+        poles, _, _, _ = eigenvectors(in_units(A, balancing_units(A)))
         size = largest_pole(poles)
         if not size < np.inf:
             continue

@@ -28,7 +28,7 @@ def run(vehicle: Vehicle, *, exchanged: float = 0.0, **request: Any) -> it.Traje
     `exchanged` [J] went to and fro where next to nothing is put in on the whole.
     """
     result = it.simulate(vehicle, **({"energy": True} | request))
-    assert result.status.ok, result.status
+    assert result.integration_status.ok, result.integration_status
     if result.energy is not None:
         assert result.energy.relative_residual < 1e-8 or abs(result.energy.residual) < 1e-8 * exchanged
     return result
@@ -638,7 +638,7 @@ def test_a_load_that_a_leak_has_not_passed_to_its_spring_is_no_steady_state(rela
     rests = np.trapezoid(run["mass_displacement"], t) / t[-1] == pytest.approx(
         np.trapezoid(load, t) / t[-1] / stiffness, rel=1e-5
     )
-    assert (run.status.ok, rests) == (settles, settles)
+    assert (run.integration_status.ok, rests) == (settles, settles)
 
 
 def test_a_motion_that_repeats_in_the_second_period_is_steady() -> None:
@@ -647,4 +647,4 @@ def test_a_motion_that_repeats_in_the_second_period_is_steady() -> None:
     run = it.simulate(car, road=it.cosine(1e-3, 0.2, speed=20.0), step=2.5e-3, initial="periodic")
     assert run.repetition.periods == 2
     assert run.repetition.mismatch > 0.0
-    assert run.status.ok
+    assert run.integration_status.ok

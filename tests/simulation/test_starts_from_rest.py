@@ -86,12 +86,12 @@ def off(seed: int) -> float:
     """By how much the two integrators differ in the body's displacement, relative to its size."""
     car, road, step, energy = member(seed)
     run = it.simulate(car, road=road, duration=0.4, step=step, energy=energy)
-    assert run.status.ok, (seed, run.status)
+    assert run.integration_status.ok, (seed, run.integration_status)
     if energy:
         assert run.energy is not None
         assert abs(run.energy.relative_residual) < 1e-7, seed
     fine = it.simulate(car, road=road, duration=0.4, step=step / 8.0, integrator="time-stepping")
-    assert fine.status.ok, (seed, fine.status)
+    assert fine.integration_status.ok, (seed, fine.integration_status)
     found, other = run["sprung_displacement"], fine["sprung_displacement"][::8]
     return float(np.max(np.abs(found - other)) / np.max(np.abs(other)))
 
@@ -110,7 +110,7 @@ def test_a_valved_damper_starts_on_every_road(seed: int, step: float) -> None:
     """Roads on which a force of zero, met in a slip, was rounding in a stick."""
     car = it.QuarterCar(250, 35, 150e3, Spring(22e3) | valved_damper(400.0, 2400.0))
     run = it.simulate(car, road=it.multisine(it.Road(2e-6, 20), seed=seed), duration=0.2, step=step)
-    assert run.status.ok
+    assert run.integration_status.ok
 
 
 def test_a_velocity_met_between_inertances_is_no_blow() -> None:
@@ -123,18 +123,18 @@ def test_a_contact_that_is_too_stiff_for_the_step_names_its_elements() -> None:
     strut = Spring(2e4) | shaft - Gap(1e-4) - (Inerter(50.0) | Friction(1.0))
     road = it.multisine(it.Road(2e-6, 20), seed=1)
     run = it.simulate(it.QuarterCar(250, 35, 150e3, strut), road=road, duration=1.0, step=5e-4)
-    assert "k_shaft and c_shaft relax in 0.01 us" in run.status.message
+    assert "k_shaft and c_shaft relax in 0.01 us" in run.integration_status.message
 
 
 @pytest.mark.parametrize("seed", sampled(range(20), kept=5))
 def test_expected_values_of_valved_dampers_are_numbers(seed: int) -> None:
     car = it.QuarterCar(250, 35, 150e3, Spring(22e3) | valved_damper(400.0, 2400.0))
     found = it.evaluate(car, it.RideComfort(it.Road(2e-6, 20)), it.ExpectedValue(realisations=16, seed=seed))
-    assert found.status.ok
+    assert found.integration_status.ok
     assert math.isfinite(found.value)
 
 
 def test_a_preload_starts_beside_a_valve() -> None:
     strut = Spring(22e3) | Push(50.0) | valved_damper(400.0, 2400.0)
     run = it.simulate(it.QuarterCar(250, 35, 150e3, strut), road=it.multisine(it.Road(2e-6, 20), seed=1), duration=0.2)
-    assert run.status.ok
+    assert run.integration_status.ok

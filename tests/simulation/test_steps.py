@@ -60,7 +60,7 @@ def checked(seed: int, steps: tuple[float, ...]) -> tuple[str, list[float], list
     except MechanismError:  # such as a gap between inertias: ill-posed, and refused
         return None
     for step, run in zip(steps, runs, strict=True):
-        assert run.status.ok, (seed, chosen.kind, step, run.status)
+        assert run.integration_status.ok, (seed, chosen.kind, step, run.integration_status)
     *coarse, finest = runs
     if chosen.gaps:
         return "gap", [], []
@@ -129,8 +129,8 @@ def survives(seed: int, steps: tuple[float, ...]) -> str:
             run = it.simulate(chosen.vehicle, duration=DURATION, step=step, every=round(1e-2 / step), **chosen.inputs)
         except (MechanismError, SimulationError):
             return "refused"
-        if not run.status.ok:
-            assert "10 000 times faster" in run.status.message, (seed, chosen.kind, step, run.status)
+        if not run.integration_status.ok:
+            assert "10 000 times faster" in run.integration_status.message, (seed, chosen.kind, step, run.integration_status)
             return "stiff"
     return "simulated"
 
@@ -162,7 +162,7 @@ def struck(force: it.Signal, friction: float, mass: float = 2.0) -> it.Trajector
 def test_a_force_just_at_break_away_holds_and_a_little_more_does_not(friction: float) -> None:
     for seconds in (0.25, 0.3):
         at = struck(it.step(friction, seconds), friction)
-        assert at.status.ok
+        assert at.integration_status.ok
         assert at.events == ()
         assert not np.any(at["mass_velocity"])
         beyond = struck(it.step(friction * 1.001, seconds), friction)
@@ -174,7 +174,7 @@ def test_a_force_just_at_break_away_holds_and_a_little_more_does_not(friction: f
 def test_a_force_that_rises_to_break_away_and_falls_again_holds() -> None:
     ramp = it.Signal.sampled([0.0, 0.4, 0.6, 1.0], [0.0, 50.0, 50.0, 0.0], "linear")
     run = struck(ramp, 50.0)
-    assert run.status.ok
+    assert run.integration_status.ok
     assert run.events == ()
     assert not np.any(run["mass_velocity"])
 
@@ -186,7 +186,7 @@ def test_what_slips_until_all_lies_still_sticks_then(step: float) -> None:
     for device in (it.Spring(1e6), it.Spring(1e6) | it.Damper(600.0), it.Damper(600.0)):
         for way in ways:
             run = it.simulate(it.Rig(device - it.Friction(4.0, "f")), displacement=way, duration=1.0, step=step)
-            assert run.status.ok
+            assert run.integration_status.ok
             assert run.states["f"] == "stick"
             assert run.events[-1].time < 0.51
 
@@ -199,7 +199,7 @@ def test_after_a_long_stick_the_slip_begins_where_it_must(step: float) -> None:
     car = it.QuarterCar(200.0, 30.0, 150e3, it.Spring(20e3) | it.Damper(800.0) | it.Friction(900.0))
     push = it.Signal.sampled(time, [0.0, 0.0, 4000.0], "linear")
     run = it.simulate(car, road=road, forces={"sprung_force": push}, duration=11.0, step=step)
-    assert run.status.ok
+    assert run.integration_status.ok
     assert [e.after for e in run.events][:1] == ["slip up"]
     first = run.events[0].time
     assert not np.any(run["f_velocity"][run.time < first])

@@ -17,8 +17,13 @@ from inerter.units import quote_value
 
 
 def simulation_text(result: SimulationResult, window: Window | None) -> str:
-    """The request, r.m.s. values, events, energy, status and what the figure shows: at most 80 columns."""
-    blocks = (_request(result), _values(result), _elements(result), _energy(result), _status(result, window))
+    """The request, r.m.s. values, events, energy, what the figure shows, and the status: at most 80 columns.
+
+    A status that is not ok stands before the values.
+    """
+    status = wrap(f"Status: {result.run.status}", WIDTH, subsequent_indent="  ")
+    blocks = [_request(result), _values(result), _elements(result), _energy(result), _remarks(result, window)]
+    blocks.insert(len(blocks) if result.run.status.ok else 1, iter(status))
     return "\n\n".join("\n".join(block) for block in map(list, blocks) if block)
 
 
@@ -123,7 +128,7 @@ def _energy(result: SimulationResult) -> Iterator[str]:
     yield from table_lines(Table("Energy", columns("Part", "Work"), rows))
 
 
-def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
+def _remarks(result: SimulationResult, window: Window | None) -> Iterator[str]:
     run, begin, end = result.run, float(result.run.time[0]), float(result.run.time[-1])
     if run.repetition is not None:
         r = run.repetition
@@ -136,7 +141,6 @@ def _status(result: SimulationResult, window: Window | None) -> Iterator[str]:
         yield from _elsewhere(run.lift_offs, window, (begin, end))
     for note in result.notes:
         yield from wrap(f"Note: {note}", WIDTH)
-    yield from wrap(f"Status: {run.status}", WIDTH)
 
 
 def _elsewhere(found: tuple[LiftOff, ...], window: Window, whole: Window) -> Iterator[str]:

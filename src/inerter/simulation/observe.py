@@ -31,7 +31,7 @@ def trajectory_of(integration: Integration, steady: PeriodicState | None, label:
     rows = integration.record.events[: integration.events]
     return Trajectory(
         time=table.sampled[:reached].copy(),  # the table may be that of other runs too
-        status=integration.status if not integration.status.ok else integration.warning,
+        integration_status=integration.status if not integration.status.ok else integration.warning,
         outputs=system.outputs,
         states=_states(integration, rows),
         energy=energy_of(integration) if integration.account.wanted else None,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.formatting import format_quantity, format_range
+from inerter.formatting import format_list, format_quantity
 
 Matrix = NDArray[np.float64]
 _COARSE = 1.0 - np.cos(2.0 * np.pi / 10.0)  # of ten samples for each oscillation
@@ -78,14 +78,17 @@ def lift_offs_of(tyre: str, time: Matrix, load: Matrix, static: float) -> Iterat
         yield LiftOff(tyre, float(begin), float(end), float(over[first : last + 1].max()))
 
 
-def lift_off_note(found: tuple[LiftOff, ...], static: float) -> str:
-    """Sentence on the intervals of wheel lift-off of one tyre."""
-    count, total = len(found), sum(one.end - one.begin for one in found)
-    times = "once" if count == 1 else f"{count} times, {format_quantity(total, 's', 3)} together"
+def lift_off_sentence(found: Sequence[LiftOff], static: Mapping[str, float]) -> str:
+    """Since when a motion is not valid, because tyres pull by more than their static loads [N]; `found` by time."""
+    pulling = []
+    for tyre in dict.fromkeys(one.tyre for one in found):
+        spans = [one for one in found if one.tyre == tyre]
+        total = format_quantity(sum(one.end - one.begin for one in spans), "s", 3)
+        times = f"{total} in {len(spans)} intervals" if len(spans) > 1 else total
+        pulling.append(f"{tyre} for {times} (static load {format_quantity(static[tyre], 'N')})")
     return (
-        f"{found[0].tyre} pulls on the road by more than its static load of {format_quantity(static, 'N')}, {times}, "
-        f"first from {format_range(found[0].begin, found[0].end, 's')}: a real tyre would lift off there, so the later "
-        f"motion is not valid."
+        f"a tyre pulls on the road by more than its static load, where a real one lifts off: {format_list(pulling)}. "
+        f"The motion after {format_quantity(found[0].begin, 's')} is not valid"
     )
 
 

@@ -64,7 +64,7 @@ def run(
     given = _inputs_at_samples(table, just_before(signals, delays, end, step), every, reached)
     return Trajectory(
         time=history.time[:reached],
-        status=history.status,
+        integration_status=history.status,
         outputs=system.outputs,
         states={},
         final_state=_state_at(system, history, given, reached - 1),

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from inerter.atomic_io import export, export_csv
 from inerter.deprecation import RenamedAttribute
-from inerter.errors import MechanismError, SimulationError, Status
+from inerter.errors import MechanismError, SimulationError, Status, StatusKind, worst_of
 from inerter.notebook import shown_by
-from inerter.simulation.peaks import LiftOff, Peak, lift_off_note, lift_offs_of, peak_of
+from inerter.simulation.peaks import LiftOff, Peak, lift_off_sentence, lift_offs_of, peak_of
 from inerter.systems.outputs import Output, find
 from inerter.systems.static_loads import static_tyre_loads
 from inerter.vehicle.mechanism import Mechanism
@@ -115,7 +115,8 @@ class FinalState:
 class Trajectory:
     """A simulated motion; `run["name"]` is an output along `time`.
 
-    `outputs` lists all names with units. If the integration had to stop, `status` says why and `time` ends there.
+    `outputs` lists all names with units. If the integration had to stop, `status` says why and `time` ends there; if a
+    tyre pulls on its road, `status` says from when on the motion is not that of a vehicle.
 
     >>> import inerter as it
     >>> run = it.simulate(it.Rig(it.Damper(100.0)), displacement=it.sine(0.01, 1.0), duration=2.0)
@@ -128,7 +129,7 @@ class Trajectory:
     _repr_html_ = shown_by("inerter.report.notebook:trajectory_html")
 
     time: Matrix  # [s]
-    status: Status
+    integration_status: Status
     outputs: Mapping[str, Output]
     states: Mapping[str, str]  # state of every nonlinear element at the start
     energy: Energy | None = None  # if it was asked for
@@ -220,14 +221,19 @@ class Trajectory:
         ]
         return tuple(sorted(found, key=lambda one: one.begin))
 
+    @cached_property
+    def status(self) -> Status:
+        """Whether the integration is accurate, and whether all tyres stay on their roads as its model has it."""
+        if not self.lift_offs:
+            return self.integration_status
+        pulled = Status(StatusKind.INACCURATE, lift_off_sentence(self.lift_offs, self.static_loads))
+        return worst_of((self.integration_status, pulled))
+
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the motion: a sentence for each tyre that would lift off."""
-        static, unknown = self._static_loads
-        if unknown:
-            return (f"Wheel lift-off cannot be checked. {unknown}",)
-        by_tyre = {tyre: tuple(one for one in self.lift_offs if one.tyre == tyre) for tyre in static}
-        return tuple(lift_off_note(found, static[tyre]) for tyre, found in by_tyre.items() if found)
+        """What could not be checked."""
+        _, unknown = self._static_loads
+        return (f"Wheel lift-off cannot be checked. {unknown}",) if unknown else ()
 
     def unit(self, name: str) -> str:
         """Unit of an output."""

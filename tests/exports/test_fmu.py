@@ -65,7 +65,7 @@ def opened(masters: list[Master], vehicle: object, kind: str, folder: Path) -> M
 def simulated(vehicle: object, signal: it.Signal, step: float, duration: float, shown: tuple[str, ...]) -> np.ndarray:
     roads = {r.name: signal for r in vehicle.mechanism().roads}  # type: ignore[attr-defined]
     run = it.simulate(vehicle, road=roads, step=step, duration=duration)  # type: ignore[arg-type]
-    assert run.status.ok
+    assert run.integration_status.ok
     return np.array([run[name][1:] for name in shown]).T
 
 

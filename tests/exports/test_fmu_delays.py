@@ -48,7 +48,7 @@ def opened(
 
 def simulated(vehicle: it.Vehicle, signal: it.Signal, speed: float, step: float, shown: tuple[str, ...]) -> np.ndarray:
     run = it.simulate(vehicle, road=signal, speed=speed, step=step, duration=signal.duration)
-    assert run.status.ok
+    assert run.integration_status.ok
     return np.array([run[name][1:] for name in shown]).T
 
 

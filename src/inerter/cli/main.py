@@ -345,7 +345,7 @@ def rig(
 @app.command(
     help_epilogue="""Examples:
   inerter export examples/quarter-car.toml --layout S3 --index J1 --to matlab
-  inerter export quarter-car-results --layout S3 --index J1 --to matlab --form state-space -o S3.m
+  inerter export my-car.toml --layout S3 --to matlab --form state-space
   inerter export quarter-car-results --layout S3 --index J1 --to modelica
   inerter export my-car.toml --layout real --to spice --linear
   inerter export my-car.toml --to fmu --part strut

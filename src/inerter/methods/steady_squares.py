@@ -95,7 +95,7 @@ def steady_squares(
     again = np.sqrt((lines * passed).sum(axis=1)) / count
     with np.errstate(divide="ignore", invalid="ignore"):
         jumps = missed_by_samples(integration, outputs, power / again)
-    return Squares(power, trajectory.status, steady, jumps, number_of_lines(lines), integration.state)
+    return Squares(power, trajectory.integration_status, steady, jumps, number_of_lines(lines), integration.state)
 
 
 def _squares_of(numbers: NDArray[np.complex128]) -> Array:

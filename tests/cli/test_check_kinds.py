@@ -171,7 +171,7 @@ def test_check_refuses_a_rig_as_rig_does(tmp_path, capsys, key, value, words):
 def test_a_simulation_on_a_road_says_its_class_and_doubts_what_no_road_is(tmp_path, capsys):
     text = (EXAMPLES / "half_car_friction.toml").read_text(encoding="utf-8")
     _, said = check(tmp_path, text, capsys)
-    assert "Road: class B of ISO 8608 (Gd(n0) = 100e-6 m^3, n0 = 0.1 cycle/m), at 25 m/s." in said
+    assert "Road: class B of ISO 8608 (Gd(n0) = 40e-6 m^3, n0 = 0.1 cycle/m), at 25 m/s." in said
     assert "Warning" not in said
     _, said = check(tmp_path, replaced(text, "roughness", '"256e-6 m^3/cycle"'), capsys)
     assert "Warning: no public road is as rough as class G" in said

@@ -130,7 +130,8 @@ def survives(seed: int, steps: tuple[float, ...]) -> str:
         except (MechanismError, SimulationError):
             return "refused"
         if not run.integration_status.ok:
-            assert "10 000 times faster" in run.integration_status.message, (seed, chosen.kind, step, run.integration_status)
+            said = run.integration_status.message
+            assert "10 000 times faster" in said, (seed, chosen.kind, step, said)
             return "stiff"
     return "simulated"
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.formatting import format_list, format_quantity
+from inerter.formatting import format_list, format_quantity, in_words
 
 Matrix = NDArray[np.float64]
 _COARSE = 1.0 - np.cos(2.0 * np.pi / 10.0)  # of ten samples for each oscillation
@@ -78,18 +78,15 @@ def lift_offs_of(tyre: str, time: Matrix, load: Matrix, static: float) -> Iterat
         yield LiftOff(tyre, float(begin), float(end), float(over[first : last + 1].max()))
 
 
-def lift_off_sentence(found: Sequence[LiftOff], static: Mapping[str, float]) -> str:
-    """Since when a motion is not valid, because tyres pull by more than their static loads [N]; `found` by time."""
-    pulling = []
+def lift_off_sentence(found: Sequence[LiftOff]) -> str:
+    """Which tyres lift off for how long, and since when the motion is not valid; `found` by time."""
+    lifted = []
     for tyre in dict.fromkeys(one.tyre for one in found):
         spans = [one for one in found if one.tyre == tyre]
         total = format_quantity(sum(one.end - one.begin for one in spans), "s", 3)
-        times = f"{total} in {len(spans)} intervals" if len(spans) > 1 else total
-        pulling.append(f"{tyre} for {times} (static load {format_quantity(static[tyre], 'N')})")
-    return (
-        f"a tyre pulls on the road by more than its static load, where a real one lifts off: {format_list(pulling)}. "
-        f"The motion after {format_quantity(found[0].begin, 's')} is not valid"
-    )
+        lifted.append(f"{in_words(tyre)} for {total}{f' in {len(spans)} intervals' if len(spans) > 1 else ''}")
+    since = format_quantity(found[0].begin, "s")
+    return f"lift-off of {format_list(lifted)}: the motion after {since} is not valid"
 
 
 def _crossing(time: Matrix, over: Matrix, i: int) -> float:

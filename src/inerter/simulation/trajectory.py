@@ -226,7 +226,7 @@ class Trajectory:
         """Whether the integration is accurate, and whether all tyres stay on their roads as its model has it."""
         if not self.lift_offs:
             return self.integration_status
-        pulled = Status(StatusKind.INACCURATE, lift_off_sentence(self.lift_offs, self.static_loads))
+        pulled = Status(StatusKind.INACCURATE, lift_off_sentence(self.lift_offs))
         return worst_of((self.integration_status, pulled))
 
     @property

@@ -19,7 +19,6 @@ from inerter.figures.labels import (
     index_title,
     index_unit,
     indices,
-    layouts,
     method_label,
     methods,
     one_method,
@@ -81,7 +80,7 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
     each = [_row(in_condition(one, i), index) for i in range(len(conditions))]
     others = [other for other in _others(row) if other != index]
     estimates, designs = [], []
-    for name in layouts(results):
+    for name in results["layout"].values.tolist():  # as in the file, where `layouts` has the baseline first
         design = row.sel(layout=name)
         own = {index: _estimate(design, index_unit(results, index), status=_status(results, design, method))}
         for other in others:

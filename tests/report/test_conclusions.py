@@ -168,3 +168,34 @@ def test_a_difference_within_the_errors_of_the_values_is_no_improvement(tmp_path
     assert told.startswith(
         "S2 is as good as S1 in ride comfort (J1), and no better (difference 0.3 % within errors of up to"
     )
+
+
+def test_a_limit_that_a_design_breaks_with_friction_is_told_unless_errors_may_have_broken_it(tmp_path):
+    """The search has no friction in it; the second method has, and with it a comfort beyond the limit."""
+    (tmp_path / "study.toml").write_text(
+        study_text(
+            'indices = ["J3", "J1"]\noptimise = "norm"\nevaluate = ["norm", "statistical-linearisation"]\n'
+            'subject_to = { J1 = { at_most = "2.86 m/s^2" } }',
+            vehicle='sprung_mass = "62 kg"\nunsprung_mass = "11.5 kg"\ntyre_stiffness = "105 kN/m"',
+            elements='k = "25 kN/m"\nc = { from = "200 N s/m", to = "6 kN s/m" }\nb = { from = "1 kg", to = "200 kg" }\n'
+            'f = "80 N"',
+            layouts='S = "k | c - (b | f)"',
+        )
+    )
+    study = load_study(tmp_path / "study.toml")
+    found = run_study(study, tmp_path / "out").data
+    told = " ".join(conclusion_sentences(found, study))
+    assert (
+        "All designs found satisfy r.m.s. body acceleration (J1) at most 2.86 m/s^2, computed without friction." in told
+    )
+    broken = re.search(r"By linearisation the limit (.+) is broken: S \(best for J3\) has ([0-9.]+) m/s\^2", told)
+    assert broken, told
+    assert broken[1] == "r.m.s. body acceleration (J1) at most 2.86 m/s^2"
+    c, b = (found["parameter_value"].sel(layout="S", index="J3", parameter=name).item() for name in "cb")
+    strut = it.Spring(25e3) | it.Damper(c) - (it.Inerter(b) | it.Friction(80.0))
+    car = it.QuarterCar(62.0, 11.5, 105e3, strut)
+    direct = it.evaluate(car, study.index("J1"), it.StatisticalLinearisation())
+    assert direct.value > 2.86
+    assert float(broken[2]) == pytest.approx(direct.value, abs=0.005)  # as printed
+    doubted = found.assign(other_error_bound=found["other_error_bound"] * 0.0 + 0.5)
+    assert "is broken" not in " ".join(conclusion_sentences(doubted, study))

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import product
 
 import numpy as np
 import xarray as xr
 
 from inerter.figures.labels import infeasible, layouts, one_method, swept_words
-from inerter.files.study.limits import SENSES, is_swept, limit_text, limited_quantity_words
+from inerter.files.study.limits import SENSES, StudyLimit, each_of, is_swept, limit_text, limited_quantity_words
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
 from inerter.formatting import format_list, format_quantity
+from inerter.methods.averages import NORMAL_QUANTILE
+from inerter.methods.registry import brief_words_of
+from inerter.optimisation.constrained_search import KEPT_COSTLY
 from inerter.report.index_summary import sweep_headlines
 from inerter.report.plausibility import result_warnings
 from inerter.report.speeds import speed_sentences
 from inerter.report.verdicts import verdict_sentences
+from inerter.table import Quantity
 
 
 def conclusion_sentences(
@@ -64,6 +69,39 @@ def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
         nominal = " with nominal values" if study.tolerance and study.limit_quantile is None else ""
         computed = f", computed {neglect}" if neglect else ""
         yield f"All designs found satisfy {format_list(limits)}{nominal}{computed}.{''.join(none)}"
+        yield from _limits_by_other_methods(results, study)
+
+
+def _limits_by_other_methods(results: xr.Dataset, study: Study) -> Iterator[str]:
+    """Sentences on limits that designs break by other methods than that of the search, by more than their errors.
+
+    Known without a sweep, conditions, a quantile or a sum of parts, of limits of an index of the study itself.
+    """
+    if study.sweeps or study.conditions or study.limit_quantile is not None or "method" not in results.dims:
+        return
+    others = [method for method in results["method"].values.tolist() if method != study.optimise]
+    limits = [limit for limit in study.limits if limit.of in study.indices and not each_of(study, limit)]
+    designs = list(product(layouts(results), study.indices))
+    for method, limit in product(others, limits):
+        given = results.sel({"method": method, "other": limit.of})
+        broken = [
+            f"{layout} (best for {index}) has {quantity}"
+            for layout, index in designs
+            if (quantity := _beyond_limit(given.sel(layout=layout, index=index), limit)) is not None
+        ]
+        if broken:
+            text = limit_text(study, limit)
+            yield f"By {brief_words_of(method)} the limit {text} is broken: {format_list(broken)}."
+
+
+def _beyond_limit(design: xr.Dataset, limit: StudyLimit) -> Quantity | None:
+    """The limited index of a design, where it breaks the limit by more than its errors."""
+    value, error, bound = (float(design[name]) for name in ("other_value", "other.standard_error", "other_error_bound"))
+    if not (np.isfinite(value) and value > 0.0):
+        return None
+    errors = np.nan_to_num(bound) + NORMAL_QUANTILE * np.nan_to_num(error) / value
+    excess = float(SENSES[limit.sense].excess(np.log(value / limit.value)))
+    return Quantity(value, limit.unit, error, bound) if excess > max(errors, KEPT_COSTLY) else None
 
 
 def _infeasible_places_clause(results: xr.Dataset, layout: str) -> str | None:

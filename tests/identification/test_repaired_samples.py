@@ -71,6 +71,7 @@ def viscous(repeated: int, noise: float) -> it.Record:
     )
 
 
+@pytest.mark.campaign
 def test_single_repeated_forces_are_named_where_they_matter_and_withhold_nothing_where_not() -> None:
     start = {"b": 40.0, "c": 200.0}
     wrong = quick_fit(viscous(12, 0.05), MODELS["ideal-viscous"], start)

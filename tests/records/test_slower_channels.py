@@ -132,8 +132,7 @@ def test_other_channels_have_the_rate_of_their_record(name: str) -> None:
     ("way", "channel"),
     sampled(
         [(w, c) for c in ("force", "displacement") for w in ("interpolated", "held")],
-        [("interpolated", "force")],
-        often=[("held", "displacement")],
+        often=[("interpolated", "force"), ("held", "displacement")],
         kept=0,
     ),
 )

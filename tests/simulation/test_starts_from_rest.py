@@ -130,7 +130,7 @@ def test_a_contact_that_is_too_stiff_for_the_step_names_its_elements() -> None:
 def test_expected_values_of_valved_dampers_are_numbers(seed: int) -> None:
     car = it.QuarterCar(250, 35, 150e3, Spring(22e3) | valved_damper(400.0, 2400.0))
     found = it.evaluate(car, it.RideComfort(it.Road(2e-6, 20)), it.ExpectedValue(realisations=16, seed=seed))
-    assert found.integration_status.ok
+    assert found.status.ok
     assert math.isfinite(found.value)
 
 

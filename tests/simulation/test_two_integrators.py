@@ -47,7 +47,7 @@ def differences(vehicle, inputs: dict) -> list[float]:
     rounding of time stepping (its matrix grows with mass over step) is of that order.
     """
     run = simulate(vehicle, duration=DURATION, step=SAMPLING, energy=True, **inputs)
-    assert run.status.ok
+    assert run.integration_status.ok
     assert run.energy.relative_residual < 1e-8
     (signal,) = inputs.values()
     names, largest = compared(vehicle), dict[str, float]()
@@ -57,7 +57,7 @@ def differences(vehicle, inputs: dict) -> list[float]:
     for step in STEPS:
         every = round(SAMPLING / step)
         check = simulate(vehicle, duration=DURATION, step=step, every=every, integrator="time-stepping", **inputs)
-        assert check.status.ok
+        assert check.integration_status.ok
         worst = 0.0
         for name in names:
             size = max(run.rms(name), 0.02 * largest[run.unit(name)])

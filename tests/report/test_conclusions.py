@@ -177,8 +177,8 @@ def test_a_limit_that_a_design_breaks_with_friction_is_told_unless_errors_may_ha
             'indices = ["J3", "J1"]\noptimise = "norm"\nevaluate = ["norm", "statistical-linearisation"]\n'
             'subject_to = { J1 = { at_most = "2.86 m/s^2" } }',
             vehicle='sprung_mass = "62 kg"\nunsprung_mass = "11.5 kg"\ntyre_stiffness = "105 kN/m"',
-            elements='k = "25 kN/m"\nc = { from = "200 N s/m", to = "6 kN s/m" }\nb = { from = "1 kg", to = "200 kg" }\n'
-            'f = "80 N"',
+            elements='k = "25 kN/m"\nc = { from = "200 N s/m", to = "6 kN s/m" }\n'
+            'b = { from = "1 kg", to = "200 kg" }\nf = "80 N"',
             layouts='S = "k | c - (b | f)"',
         )
     )

@@ -72,6 +72,7 @@ def test_a_wrong_unit_contradicts_a_known_inertance() -> None:
         it.identify(replace(right, force=right.force / 4.4482216), known, starts=16)
 
 
+@pytest.mark.campaign
 def test_the_right_unit_raises_nothing_and_a_bound_is_told_as_well() -> None:
     right = record()
     b = it.identify(right, MODEL, starts=16).parameters["b"]

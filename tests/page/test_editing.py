@@ -225,6 +225,7 @@ def test_a_method_that_is_chosen_just_before_the_page_is_drawn_anew_counts(visit
 def test_friction_at_an_inerter_is_offered_to_all_layouts_that_have_it(visitor: Visitor) -> None:
     """Else a strut with friction is ranked among others without it. All of them are one step."""
     page = visitor.page
+    page.wait_for_function("() => sessionStorage.getItem('inerter.document') !== null")  # it is kept a little later
     before = json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["study"]["layouts"]
     visitor.pick("S3")
     page.locator(".drawing [data-name=b]").click()

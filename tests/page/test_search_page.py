@@ -32,7 +32,7 @@ WHOLE = """label => [...document.querySelectorAll(`.job [aria-label^='${label}']
   each.clientWidth > 0 && each.scrollWidth <= each.clientWidth)"""
 
 KEPT = """([place, entry]) => JSON.stringify(place.reduce((table, key) => table?.[key],
-  JSON.parse(sessionStorage.getItem('inerter.document')).study)) === JSON.stringify(entry)"""
+  JSON.parse(sessionStorage.getItem('inerter.document'))?.study)) === JSON.stringify(entry)"""
 
 
 def searches(served: Served) -> list[dict[str, Any]]:
@@ -268,7 +268,7 @@ def test_enter_in_a_field_begins_no_long_work(served: Served, searching: Visitor
     inerters.fill("1")
     inerters.press("Enter")
     page.wait_for_function(
-        "() => JSON.parse(sessionStorage.getItem('inerter.document')).study.elements.any?.inerters_at_most === 1"
+        "() => JSON.parse(sessionStorage.getItem('inerter.document'))?.study.elements.any?.inerters_at_most === 1"
     )
     sweep = page.locator("form.begin", has_text="Sweep")
     sweep.locator("[name=from]").press("Enter")

@@ -146,7 +146,6 @@ def test_kept_designs_of_other_studies_are_compared_with_what_tells_them_apart(
     (tmp_path / "study.toml").write_text(STUDY)
     visitor.open(tmp_path / "study.toml")
     page.wait_for_selector("text=study.toml is open")
-    visitor.settled()
     visitor.pick("S5")
     page.click("#tab-compare")
     for place, text in {"elements.b": "150 kg", "vehicle.unsprung_mass": "40 kg", "road.speed": "50 m/s"}.items():

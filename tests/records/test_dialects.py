@@ -180,3 +180,15 @@ def test_both_units_of_a_profile_are_asked_for_at_once(tmp_path):
     (tmp_path / "a.csv").write_text("0,1\n1,2\n2,1\n", encoding="utf-8")
     with pytest.raises(RecordError, match=r"units=\{'distance': 'm', 'height': 'mm'\}\."):
         it.read_profile(tmp_path / "a.csv", distance=0)
+
+
+@pytest.mark.parametrize("end", ["0.019,1.9000,3.80", "0.019,1.9000,3.8", "0.019,1.9000", "0.01"])
+def test_a_last_row_that_is_cut_short_is_left_out(tmp_path, end):
+    """Of a recording that broke off, "3.80" would be read as the force."""
+    rows = [f"{at / 1000:.3f},{at / 10:.4f},{at / 5:.4f}" for at in range(30)]
+    (tmp_path / "a.csv").write_text("\n".join(["time [s],x [mm],F [N]", *rows[:29], end]))
+    record = it.read_record(tmp_path / "a.csv")
+    assert record.time.size == 29
+    assert f'The last line, "{end}", was left out: the file ends within it.' in record.notes
+    (tmp_path / "b.csv").write_text("\n".join(["time [s],x [mm],F [N]", *rows]))  # whole, without a last line end
+    assert it.read_record(tmp_path / "b.csv").time.size == 30

@@ -34,6 +34,7 @@ _THOUSANDS = re.compile(
 _UTF_16 = {b"\xff\xfe": "utf-16-le", b"\xfe\xff": "utf-16-be"}
 _THOUSANDS_SAID = "thousands separators. Export numbers without them, such as 1234.5."
 _TAIL = 1 << 12  # bytes at the end in which lines of text are looked for
+_FEW_ROWS = 20  # that do not show how long a row is
 _ABSENT = ";"  # delimiter of a table of one column
 _DELIMITERS = ("\t", ";", ",", None)  # None: any white space
 
@@ -90,7 +91,11 @@ def _as_utf8(raw: BinaryIO) -> BinaryIO:
 
 
 def _end_of_numbers(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str, ...]]:
-    """End of the numbers [bytes]: before last lines without any, such as "Ende", which a note reports."""
+    """End of the numbers [bytes], and notes of what comes after.
+
+    That is last lines without numbers, such as "Ende", and a last row that is cut short, as by a recording that broke
+    off: "0.20" of "0.2034" is a number too.
+    """
     end = file.seek(0, os.SEEK_END)
     start = max(layout.offset, end - _TAIL)
     file.seek(start)
@@ -100,11 +105,22 @@ def _end_of_numbers(file: BinaryIO, layout: TableLayout) -> tuple[int, tuple[str
     rows = [_cells(line.decode(layout.encoding, errors="replace"), layout.delimiter) for line in lines]
     last = max((at for at, cells in enumerate(rows) if not all(map(_is_text, cells))), default=None)
     left = [] if last is None else [at for at in range(last + 1, len(rows)) if any(rows[at])]
+    why = "no numbers"
+    if not left and _is_cut_short(lines, rows):
+        left, why = [len(lines) - 1], "the file ends within it"
     if not left:
         return end, ()
     said = quote_value(lines[left[0]].decode(layout.encoding, errors="replace").strip())
     which = f"The last line, {said}, was" if len(left) == 1 else f"The last {len(left)} lines, from {said} on, were"
-    return start + sum(map(len, lines[: left[0]])), (f"{which} left out: no numbers.",)
+    return start + sum(map(len, lines[: left[0]])), (f"{which} left out: {why}.",)
+
+
+def _is_cut_short(lines: list[bytes], rows: list[list[str]]) -> bool:
+    """Whether the last line has no end, and fewer cells, or a shorter last cell, than every line before it."""
+    before = [cells for cells in rows[:-1] if cells]
+    if len(before) < _FEW_ROWS or not rows[-1] or lines[-1].endswith((b"\n", b"\r")):
+        return False
+    return (len(rows[-1]), len(rows[-1][-1])) < min((len(cells), len(cells[-1])) for cells in before)
 
 
 def _is_text(cell: str) -> bool:

@@ -76,12 +76,15 @@ def _included_uncertainty_text(f: Finding) -> Text:
     mass = f.numbers["fixture_mass_error"]
     known += [] if mass is None else [f"a fixture mass known to {format_quantity(mass, 'kg', 3)}"]
     text = f"Intervals include {' and '.join(known)} (standard uncertainty, k = 1). " if known else ""
-    text += "All values include the compliance between encoder and device, which no record shows"
+    text += (
+        "All values include what no record shows: the compliance between encoder and device, and an error of the clock "
+        "(1 % fast makes damping 1 % and inertance 2 % larger)"
+    )
     unknown = [n for n in _SCALES if not f.numbers[n]]
     if not unknown:
         return (f"{text}.",)
     sensors = " and the ".join(_SCALES[n][0] for n in unknown)
-    text += f", and errors in the scale of the {sensors}: {_SCALES[unknown[0]][1]}. State a known uncertainty as "
+    text += f"; and errors in the scale of the {sensors}: {_SCALES[unknown[0]][1]}. State a known uncertainty as "
     return (text, Remedy(_SCALE_REMEDIES[unknown[0]], "1 +- 1 %"), ".")
 
 

@@ -199,3 +199,46 @@ def test_a_limit_that_a_design_breaks_with_friction_is_told_unless_errors_may_ha
     assert float(broken[2]) == pytest.approx(direct.value, abs=0.005)  # as printed
     doubted = found.assign(other_error_bound=found["other_error_bound"] * 0.0 + 0.5)
     assert "is broken" not in " ".join(conclusion_sentences(doubted, study))
+
+
+LIMITED = """baseline = "plain"
+subject_to = { J3 = { at_most = "290 N" }, static-stiffness.strut = { at_most = "30 kN/m" } }
+"""
+
+
+def limited_study(tmp_path, keys, method="statistical-linearisation"):
+    path = tmp_path / "study.toml"
+    path.write_text(
+        study_text(
+            f'indices = ["J1"]\noptimise = "{method}"\nevaluate = ["{method}"]\n{LIMITED}{keys}',
+            vehicle='sprung_mass = "62 kg"\nunsprung_mass = "11.5 kg"\ntyre_stiffness = "105 kN/m"',
+            elements='k = "25 kN/m"\nc = { from = "200 N s/m", to = "6 kN s/m" }\nb = "30 kg"\nf = "20 N"',
+            layouts='plain = "k | c"\nS = "k | c - (b | f)"',
+        )
+    )
+    return load_study(path)
+
+
+def test_where_limits_are_not_checked_is_said_beside_numbers_that_are_shown_there(tmp_path):
+    """A design that keeps its limit of J3 breaks it at a higher speed, whose comfort the report shows."""
+    study = limited_study(tmp_path, 'break_even = ["f"]')
+    found = run_study(study, tmp_path / "out").data
+    c = found["parameter_value"].sel(layout="S", index="J1", parameter="c").item()
+    car = it.QuarterCar(62.0, 11.5, 105e3, it.Spring(25e3) | it.Damper(c) - (it.Inerter(30.0) | it.Friction(20.0)))
+    here, faster = (
+        it.evaluate(car, it.TyreLoad(it.Road(study.road.roughness, float(speed))), it.StatisticalLinearisation()).value
+        for speed in found["at_speeds.speed"].values[1:]
+    )
+    limit = study.limits[0].value
+    assert here <= limit * (1.0 + 1e-6) < 1.02 * limit < faster
+    told = conclusion_sentences(found, study)
+    assert told[-2].startswith("All designs found satisfy")
+    assert told[-1] == (
+        "Not checked are the limits at the other speeds and at the break-even values: designs may break them there."
+    )
+
+
+def test_limits_without_numbers_at_other_speeds_or_values_are_checked_wherever_numbers_are_shown(tmp_path):
+    study = limited_study(tmp_path, "", "norm")
+    told = conclusion_sentences(run_study(study, tmp_path / "out").data, study)
+    assert told[-1].startswith("All designs found satisfy")

@@ -12,6 +12,7 @@ from inerter.figures.labels import infeasible, layouts, one_method, swept_words
 from inerter.files.study.limits import SENSES, StudyLimit, each_of, is_swept, limit_text, limited_quantity_words
 from inerter.files.study.method_labels import neglect_clause
 from inerter.files.study.plausibility import input_warnings
+from inerter.files.study.speeds import AT_SPEEDS
 from inerter.files.study.static import at_static_limit
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import Answer, TaskResults, by_task
@@ -67,9 +68,21 @@ def _constraint_sentence(results: xr.Dataset, study: Study) -> Iterator[str]:
         ]
         neglect = neglect_clause(study, study.optimise) if study.optimise is not None else ""
         nominal = " with nominal values" if study.tolerance and study.limit_quantile is None else ""
+        elsewhere = [
+            *(["at the other speeds"] if _has_limits_at_speeds(results, study) else []),
+            *(["at the break-even values"] if study.budgets else []),
+        ]
         computed = f", computed {neglect}" if neglect else ""
         yield f"All designs found satisfy {format_list(limits)}{nominal}{computed}.{''.join(none)}"
+        if elsewhere:
+            yield f"Not checked are the limits {format_list(elsewhere)}: designs may break them there."
         yield from _limits_by_other_methods(results, study)
+
+
+def _has_limits_at_speeds(results: xr.Dataset, study: Study) -> bool:
+    """Whether the results have values at other speeds, and a limited quantity depends on the road."""
+    on_road = any(not limit.is_static and study.needs_road(limit.of) for limit in study.limits)
+    return on_road and f"{AT_SPEEDS}value" in results and bool(np.isfinite(results[f"{AT_SPEEDS}value"]).any())
 
 
 def _limits_by_other_methods(results: xr.Dataset, study: Study) -> Iterator[str]:

@@ -46,6 +46,11 @@ class StudyLimit:
     unit: str
 
     @property
+    def is_static(self) -> bool:
+        """Whether the static stiffness of a strut is limited."""
+        return self.of.partition(".")[0] == _STIFFNESS
+
+    @property
     def words(self) -> str:
         """Quantity of the limit and its sense, as text."""
         return f"{self.of} {in_words(self.sense)}"

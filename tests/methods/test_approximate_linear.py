@@ -226,6 +226,17 @@ def test_the_bound_of_few_lines_holds_what_their_lower_peaks_change(body, wheel,
     assert "few lines in a resonance" in [source.name for source in short.error_sources]
 
 
+def test_the_bound_holds_realisations_without_a_steady_state_of_which_none_is_drawn():
+    """A gap that closes in one realisation of forty, and then rattles."""
+    strut = Spring(76.2e3) | Damper(2677.0) | ((Spring(1.43e6) | Damper(76.9)) - Gap(4.6e-3) - Inerter(27.6))
+    car = QuarterCar(261.5, 29.5, 290e3, strut)
+    few, many = (evaluate(car, J5, ApproximateLinear(realisations=count, seed=2)) for count in (6, 48))
+    assert "periodic steady state not reached in realisation 33" in many.status.message
+    apart = abs(few.value - many.value)
+    assert 0.02 * few.value < apart < few.error_bound * few.value
+    assert few.status.kind is StatusKind.INACCURATE
+
+
 def test_a_gap_is_no_linear_design():
     car = paper_quarter_car(k | Damper(3705.4) | screw - Gap(1e-4) - Inerter(110.84))
     estimate = evaluate(car, J1, ApproximateLinear(SHORT, realisations=2))

@@ -225,12 +225,12 @@ class ApproximateLinear(FormerMethodNames):
             gains = _gains(squares[:, places], inputs[:, None], pooled)
             factor = _factor(definition, definition.input_paths(runs.system.mechanism)[0], runs)
             estimate, peaked = self._from_gains(definition, linear, gains * factor, runs)
-        settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch)
         near = factor * self._near_peak(estimate, runs.drive)
         jumps = 0.0 if self._raw else runs.sampling_error(places, near)  # of raw gains instants are a part
         stepped = ErrorSource("time step", _STEPPED + jumps)
         if not self._raw:
             peaked = max(peaked, runs.peaked_by_play(places, near))
+        settled = ErrorSource("periodic steady state", _UNSETTLED * runs.mismatch + runs.unsettled)
         own = stepped, settled, *estimate.error_sources, few_lines(peaked)
         stand_ins = error_sources_of(definition.drive, runs.system.mechanism)
         if shape_of(definition.drive) is not None and linear is not None:

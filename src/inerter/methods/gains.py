@@ -122,6 +122,7 @@ class Runs:
     mismatch: float = 0.0  # the largest change of the state over a period that was recorded, relative to its size
     remaining: float = 0.0  # the largest share of a motion that remains after a period
     larger: Runs | None = None  # the same realisations at twice the size
+    change: float = 0.0  # of a mean square by that size
 
     def upto(self, count: int) -> tuple[Array, Array]:
         """Squared sizes of outputs (realisations, outputs, harmonics) and of the input (realisations, harmonics).
@@ -170,7 +171,19 @@ class Runs:
                 return math.inf
             gains = squares[:_COMPARED, list(places)].sum(axis=0) / inputs[:_COMPARED].sum(axis=0)
             sums.append((gains * factor).sum(axis=1))
-        return lower_peaks(relative_change(sums[1], sums[0]), float(np.mean(self.over_lines)))
+        self.change = relative_change(sums[1], sums[0])
+        return lower_peaks(self.change, float(np.mean(self.over_lines)))
+
+    @property
+    def unsettled(self) -> float:
+        """Relative error by realisations, none of which is known, that reach no periodic steady state.
+
+        Some may where those at twice the size do not. After n that all reach one, the next does not with a probability
+        of 1 / (n + 2), by Laplace's rule of succession; its mean square may change by as much as at twice the size.
+        """
+        if self.larger is None or self.larger.warning.ok:
+            return 0.0
+        return max(self.change, 1.0) / (len(self.squares) + 2.0)
 
     def _add(self, number: int) -> None:
         seed = int(np.random.SeedSequence([self.seed, number]).generate_state(1)[0])

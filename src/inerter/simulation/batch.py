@@ -49,6 +49,8 @@ _TOGETHER = 16  # designs on the same signal in one item of work, which is laid 
 class Batch:
     """Mean squares over time of every design on every signal; nan where a run could not go to its end.
 
+    Without a history there is no check for wheel lift-off, so `status` is the `integration_status` of `simulate`.
+
     >>> import inerter as it
     >>> devices = [it.Rig(it.Damper(c)) for c in (100.0, 300.0)]
     >>> both = it.simulate_many(devices, outputs=["device_force"], duration=1.0, displacement=[it.sine(0.01, 1.0)])

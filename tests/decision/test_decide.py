@@ -111,7 +111,7 @@ def test_no_caveat_is_left_out(found: tuple[list[DesignResult], Over]) -> None:
     for one in decision.designs:
         told = kinds(decision, one.name)
         if one.unchosen:
-            assert CaveatKind.UNCHOSEN in told
+            assert CaveatKind.UNCHOSEN in told or all(each.unchosen for each in decision.designs)
             continue
         assert not one.neglected or CaveatKind.NEGLECTED in told
         assert all(limit.kept for limit in one.limits) or CaveatKind.LIMIT in told
@@ -285,6 +285,21 @@ def test_what_gets_worse_is_said_once_for_equally_good_designs() -> None:
         "Dynamic tyre load (J3) gets worse: S2, S3 and S4 are 4.0 % worse than S1.",
         "Dynamic load carrying (J5) gets worse: S2 is 2.0 % and S3 3.0 % worse than S1.",
     ]
+
+
+def test_ideal_inerters_beside_real_ones_are_named() -> None:
+    """Friction or backlash costs part of the improvement: whoever compares a strut without any is told so."""
+
+    def told(*rows: DesignResult) -> list[str]:
+        caveats = decide([BASE, *rows], lambda one, other: Improvement(5.0)).verdict.caveats
+        return [one.sentence for one in caveats if one.kind is CaveatKind.IDEAL]
+
+    ideal = [design(f"S{i}", 2.5, has_inerter=True) for i in (2, 3)]
+    real = design("S4", 2.6, has_inerter=True, modelled=("friction f",))
+    relaxation = design("S5", 2.7)
+    assert told(*ideal, relaxation) == told(real, relaxation) == []
+    assert told(ideal[0], real) == ["The inerter of S2 is ideal; S4 has friction or backlash."]
+    assert told(*ideal, real, relaxation) == ["The inerters of S2 and S3 are ideal; S4 has friction or backlash."]
 
 
 def test_values_at_bounds_are_said_in_one_sentence() -> None:

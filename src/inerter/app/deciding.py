@@ -14,7 +14,7 @@ from inerter.app.index_values import DesignLimit, limits_at
 from inerter.app.kinds import Tell, report_nothing
 from inerter.app.wire import typeset_sentences
 from inerter.decision.decide import decide_by_comparison
-from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, nonlinear_elements
+from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, has_inerter, nonlinear_elements
 from inerter.decision.results import DesignResult, Improvement, IndexResult
 from inerter.files.study.conditions import condition_labels
 from inerter.files.study.sections import OVER
@@ -138,6 +138,7 @@ class _DesignComparison:
             neglected=neglected,
             is_baseline=design is self.baseline,
             n_elements=len(design.mechanism.strut_elements()),
+            has_inerter=has_inerter(design.mechanism),
         )
 
     def _index_result(self, one: DesignEstimate) -> IndexResult:

@@ -28,6 +28,7 @@ class CaveatKind(StrEnum):
     TIE = "tie"  # a difference is not significant
     LIMIT = "limit"  # a limit is broken, or its quantity not known
     NEGLECTED = "neglected"  # friction or backlash that the method neglects
+    IDEAL = "ideal"  # an ideal inerter that is compared with one with friction or backlash
     BOUND = "bound"  # a value is at its bound
     UNCHOSEN = "unchosen"  # a design variable has no value yet
 
@@ -84,6 +85,7 @@ def caveats_of(contest: Contest) -> list[Caveat]:
         *_ties(contest),
         *_limits(contest),
         *_neglect_caveats(contest),
+        *_ideal_inerters(contest),
         *_bounds(contest),
         *_unchosen(contest),
     ]
@@ -206,6 +208,20 @@ def _neglect_caveats(contest: Contest) -> Iterator[Caveat]:
         yield Caveat(CaveatKind.NEGLECTED, f"{capital(what)} of {format_list(names)} is neglected{by}{remedy}.")
 
 
+def _ideal_inerters(contest: Contest) -> Iterator[Caveat]:
+    names: dict[bool, list[str]] = {True: [], False: []}  # by whether friction or backlash is modelled
+    for one in contest.complete:
+        if one.has_inerter:
+            names[bool(one.modelled)].append(one.name)
+    if names[True] and names[False]:
+        be = "inerter of {} is" if len(names[False]) == 1 else "inerters of {} are"
+        have = "has" if len(names[True]) == 1 else "have"
+        text = (
+            f"The {be.format(format_list(names[False]))} ideal; {format_list(names[True])} {have} friction or backlash."
+        )
+        yield Caveat(CaveatKind.IDEAL, text)
+
+
 def _bounds(contest: Contest) -> Iterator[Caveat]:
     places = _names_by(contest.winners, lambda one: one.at_bounds)
     clauses = [
@@ -222,7 +238,7 @@ def _bounds(contest: Contest) -> Iterator[Caveat]:
 def _unchosen(contest: Contest) -> Iterator[Caveat]:
     by_variables: dict[tuple[str, ...], list[DesignResult]] = {}
     for design in contest.designs:
-        if design.unchosen:
+        if design.unchosen and contest.complete:  # else the verdict says it of all
             by_variables.setdefault(design.unchosen, []).append(design)
     for designs in by_variables.values():
         end = "it is not ranked" if len(designs) == 1 else "they are not ranked"

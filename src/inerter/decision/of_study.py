@@ -13,7 +13,7 @@ from inerter.formatting import format_list, format_quantity, format_share
 from inerter.indices.names import title_with_name
 from inerter.methods.method import NonlinearitySupport
 from inerter.methods.registry import brief_words_of, is_blind, nonlinearities_of, simulating_method
-from inerter.networks.elements import Free
+from inerter.networks.elements import Free, Inerter
 from inerter.systems.graph import switching_parts
 from inerter.vehicle.mechanism import Mechanism
 
@@ -54,6 +54,11 @@ def nonlinear_elements(mechanism: Mechanism, method: str) -> tuple[tuple[str, ..
         if part.acts
     )
     return ((), tuple(found)) if blind else (tuple(found), ())
+
+
+def has_inerter(mechanism: Mechanism) -> bool:
+    """Whether there is an inerter in the struts."""
+    return any(isinstance(element, Inerter) for element in mechanism.strut_elements())
 
 
 def at_bounds(free: Mapping[str, Free], values: Mapping[str, float], units: Mapping[str, str]) -> Iterator[AtBound]:

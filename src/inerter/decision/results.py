@@ -169,6 +169,7 @@ class DesignResult:
     neglected: tuple[str, ...] = ()
     is_baseline: bool = False
     n_elements: int = 0
+    has_inerter: bool = False
 
     @property
     def breaks_limit(self) -> bool:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from inerter.decision.caveats import CaveatKind
 from inerter.decision.decide import Decision, decide_by_comparison
-from inerter.decision.of_study import decisive_method, nonlinear_elements
+from inerter.decision.of_study import decisive_method, has_inerter, nonlinear_elements
 from inerter.decision.results import AtBound, DesignResult, IndexResult
 from inerter.errors import OK, ErrorSource, Status, StatusKind
 from inerter.figures.labels import (
@@ -99,6 +99,7 @@ def study_decision(results: xr.Dataset, index: str, study: Study | None = None) 
                 neglected=neglected,
                 is_baseline=name == row.attrs["baseline"],
                 n_elements=int(design["elements"]) if "elements" in design.coords else 0,
+                has_inerter=mechanism is not None and has_inerter(mechanism),
             )
         )
 

@@ -145,6 +145,27 @@ def test_an_optimum_that_comes_late_is_not_put_into_another_study(visitor: Visit
     assert json.loads(page.evaluate("() => sessionStorage.getItem('inerter.document')"))["values"] == {}
 
 
+def test_an_optimum_that_comes_after_an_undo_is_taken_and_what_was_undone_can_be_redone(
+    served: Served, visitors: Callable[..., Visitor]
+) -> None:
+    window = visitors(served)
+    held_back = HeldRequests(window, "**/api/panel/optimise")
+    page = window.visit().page
+    wait_until(lambda: (page.wait_for_timeout(20), bool(held_back.routes))[1])
+    entry = page.locator("[id='entry vehicle.sprung_mass']")
+    entry.fill("200 kg")
+    page.keyboard.press("Enter")
+    page.wait_for_function("() => document.getElementById('entry vehicle.sprung_mass').title === '200 kg'")
+    page.get_by_role("button", name="Undo").click()
+    page.wait_for_function("() => document.getElementById('entry vehicle.sprung_mass').title !== '200 kg'")
+    held_back.end()
+    for late in held_back.routes:
+        late.continue_()
+    window.chosen()
+    page.get_by_role("button", name="Redo").click()
+    page.wait_for_function("() => document.getElementById('entry vehicle.sprung_mass').title === '200 kg'")
+
+
 def _moves(page: Any) -> None:
     """Wait for less than two seconds until something tells how long an answer is coming, and see that it goes on."""
     page.wait_for_selector(".clock", timeout=2000)

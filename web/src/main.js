@@ -68,7 +68,8 @@ async function connect() {
     const best = fresh ? beginAtBest(store, api, "first", !("layout" in first)) : null;
     store.dispatch({ type: "connected", connection: "ready" });
     await best;
-    if (fresh && store.get().history.past.length <= 1) store.dispatch({ type: "began" });
+    const { past, future } = store.get().history;
+    if (fresh && past.length <= 1 && future.length === 0) store.dispatch({ type: "began" });
     await findWork(store, api);
   } catch (error) {
     if (isUnauthorised(error)) {

@@ -7,7 +7,7 @@ import { doubted, isOk } from "./parts/doubts.js";
 import { questions, strutTexts } from "./questions.js";
 import { indicesIn, nextLayout, own, textOf } from "./state/document.js";
 import { listed, strutWords } from "./state/scale.js";
-import { TAKEN } from "./state/store.js";
+import { AMENDS, TAKEN } from "./state/store.js";
 
 /** @import { Store, State } from "./state/store.js" */
 /** @import { Api } from "./api.js" */
@@ -127,15 +127,15 @@ export async function beginAtBest(store, api, gesture, selects = false) {
     const body = { study, layouts, indices: [index], method, methods: [method] };
     const { designs, left_out: others } = await untilFound(() => whileWaiting(api, "opening", body));
     const { present, future } = store.get().history;
-    const isUndone = future.length > 0; // a step that nobody asked for would end what can be redone
+    const late = future.length > 0 ? AMENDS : gesture; // a step that nobody asked for would end what can be redone
     const open = (designs ?? []).filter((each) => own(present.values, each.layout) === undefined); // nobody chose those
-    if (open.length > 0 && present.study === study && !isUndone) {
-      takeOptima(store, open, gesture, study);
+    if (open.length > 0 && present.study === study) {
+      takeOptima(store, open, late, study);
       const doubts = doubted(open.flatMap(membersOf));
       if (doubts) store.say(doubts.trim());
     }
     const isAll = layouts.length > 1 && !others; // of which the verdict is
-    if (selects && designs && isAll && present.layout === layout && !isUndone) await selectBest(store, api, gesture);
+    if (selects && designs && isAll && present.layout === layout) await selectBest(store, api, late);
   } catch {
     // Then the values are the middles of their bounds, and what is wrong is told where it is asked for.
   } finally {

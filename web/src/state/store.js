@@ -16,7 +16,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
 /** What the page has to say: `about` tells which message a newer one replaces, `offer` what a button beside it does,
  * `of` the document to which it was said.
  * @typedef {{label: string, act: () => void}} Offer */
-/** @typedef {{about: string, text: string, of: Document, offer?: Offer}} Message */
+/** @typedef {{about: string, text: string, of: Document, offer?: Offer, brief?: boolean}} Message */
 /** @typedef {{id: string, kind: string, title: string, study: string,
  * state: "waiting" | "running" | "done" | "stopped" | "failed", begun: number | null, share: number | null,
  * sentence: string | null, found?: any, result: any}} Job  `study`: its title; `begun`: in seconds since 1970, by the
@@ -59,7 +59,7 @@ import { beginning, changed, redone, rested, undone } from "./history.js";
  *  | {type: "viewed", view: Partial<View>}
  *  | {type: "told", about: any}
  *  | {type: "connected", connection: Connection}
- *  | {type: "said", text: string, about?: string, offer?: Offer}
+ *  | {type: "said", text: string, about?: string, offer?: Offer, brief?: boolean}
  *  | {type: "closed", about: string}
  *  | {type: "typed", typed: Typed}
  *  | {type: "read", typed: Typed, sentence?: string}} Action */
@@ -92,6 +92,9 @@ export const messagesOf = ({ messages }) => messages.filter(({ about }) => about
 /** What is told of the present values. @param {State} state */
 export const toldOfValues = ({ messages, history: { present } }) =>
   messages.find(({ about, of }) => about === TAKEN && of === present)?.text ?? "";
+
+/** The gesture of what comes late and of itself: it is no step, and ends nothing that can be redone. */
+export const AMENDS = Symbol("amends");
 const ELSEWHERE = ["opened", "restored", "designTaken"]; // what brings another study
 
 /** The state with another document in it: nothing that was said or answered of the one before is about it.
@@ -102,7 +105,8 @@ const elsewhere = (state, history) =>
 /** @type {{[type: string]: (state: State, action: any) => State}} */
 const STEPS = {
   changed: (state, { change, gesture }) => {
-    const history = changed(state.history, after(state.history.present, change), gesture);
+    const next = after(state.history.present, change);
+    const history = gesture === AMENDS ? { ...state.history, present: next } : changed(state.history, next, gesture);
     if (ELSEWHERE.includes(change.type)) return elsewhere(state, history);
     const waiting = state.typed.filter((each) => isWaiting(each) && targetOf(each.change) !== targetOf(change));
     return { ...state, history, typed: waiting };
@@ -136,9 +140,9 @@ const STEPS = {
   viewed: (state, { view }) => ({ ...state, view: { ...state.view, ...view } }),
   told: (state, { about }) => ({ ...state, about }),
   connected: (state, { connection }) => (connection === state.connection ? state : { ...state, connection }),
-  said: (state, { text, about = text, offer }) =>
-    ({ ...state, messages: [...others(state, about), { about, text, of: state.history.present,
-      ...(offer ? { offer } : {}) }].slice(-MOST) }),
+  said: (state, { type, text, about = text, ...more }) =>
+    ({ ...state, messages: [...others(state, about), { about, text, of: state.history.present, ...more }]
+      .slice(-MOST) }),
   closed: (state, { about }) => ({ ...state, messages: others(state, about) }),
   typed: (state, { typed }) => ({ ...state, typed: [...state.typed.filter(({ id }) => id !== typed.id), typed],
     answers: without(state.answers, panelOf(typed)) }),
@@ -186,7 +190,7 @@ export function createStore(state = initial()) {
       for (const change of [changes].flat().filter(isChange)) dispatch({ type: "changed", change, gesture });
     },
     look: (view) => dispatch({ type: "viewed", view }),
-    say: (text, about, offer) => dispatch({ type: "said", text, about, offer }),
+    say: (text, about, offer) => dispatch({ type: "said", text, about, ...(offer && { offer }) }),
     subscribe: (told) => {
       listeners.add(told);
       return () => void listeners.delete(told);

@@ -326,7 +326,7 @@ def test_values_that_nobody_has_chosen_are_optimised_from_the_verdict_and_taken(
     visitor.settled()
     visitor.drawn()
     assert page.evaluate(HIDDEN) == 0  # the warning leaves room for the whole plot
-    page.locator("#verdict").get_by_role("button", name="Values not chosen: optimise all layouts").click()
+    page.locator("#verdict").get_by_role("button", name="Optimise all layouts").click()
     page.wait_for_selector("text=The values of S1 and S3 are the best found for J1.", timeout=120_000)
     visitor.chosen()
     visitor.settled()
@@ -504,3 +504,55 @@ def test_the_keys_that_are_listed_join_each_kind_of_element(visitor: Visitor) ->
         page.wait_for_function("before => document.getElementById('network-text').value !== before", arg=before)
         (new,) = set(re.findall(r"\w+", page.input_value("#network-text"))) - set(re.findall(r"\w+", before))
         assert new.startswith(symbol)
+
+
+def test_what_is_told_of_a_file_that_is_open_moves_nothing(visitor: Visitor) -> None:
+    page = visitor.page
+    panels = "() => [...document.querySelectorAll('.panel')].map(each => each.getBoundingClientRect().top)"
+    page.click("#tab-rig")
+    before = page.evaluate(panels)[0]
+    visitor.open(EXAMPLES / "limits.toml")
+    page.wait_for_selector("text=limits.toml is open")
+    assert page.evaluate(panels)[0] == before
+    page.get_by_role("button", name="Close the message").click()
+    page.wait_for_selector("text=limits.toml is open", state="detached")
+
+
+CUT = """() => [...document.querySelectorAll("#verdict, #verdict > b, #verdict .caveat:not([hidden])")].filter(each =>
+  each.scrollWidth > each.clientWidth || each.scrollHeight > each.clientHeight).map(each => each.textContent)"""
+
+
+def test_a_long_caveat_is_read_whole(visitor: Visitor) -> None:
+    """On two lines below a verdict of one; that which has no room either is in the list of all."""
+    page = visitor.page
+    visitor.open(EXAMPLES / "half-car.toml")
+    page.wait_for_selector("text=half-car.toml is open")
+    visitor.chosen()
+    visitor.settled()
+    visitor.drawn()
+    (caveat,) = page.locator("#verdict .caveat:not([hidden])").all()
+    assert "leaves the road at times" in caveat.inner_text()
+    assert page.evaluate(CUT) == []
+    page.set_viewport_size({"width": 1920, "height": 1080})  # on one line, and on two again
+    visitor.drawn()
+    page.set_viewport_size({"width": 1280, "height": 800})
+    visitor.drawn()
+    assert page.evaluate(CUT) == []
+
+
+def test_the_ranking_is_as_wide_as_its_panel(visitor: Visitor) -> None:
+    """All five rows of the quarter car are in sight, and a fourth index too."""
+    page = visitor.page
+    left = """() => {
+      const box = document.querySelector(".answers > .scroll");
+      return [box.scrollWidth - box.clientWidth, box.scrollHeight - box.clientHeight];
+    }"""
+    assert page.evaluate(left) == [0, 0]
+    page.fill("[id='entry vehicle.sprung_mass']", "450 kg")  # which makes long differences
+    page.keyboard.press("Enter")
+    page.click("#step-2")
+    page.get_by_role("group", name="Indices of the study").get_by_text("suspension travel").click()
+    page.wait_for_selector("td[data-index=suspension-travel]")
+    page.keyboard.press("Escape")
+    visitor.settled()
+    assert page.evaluate(left)[0] == 0

@@ -196,7 +196,8 @@ function Bar({ store, enter }) {
     ${problems.length > 0 && html`<div class="problems" role="alert"><b>In the study</b><ul>
       ${problems.map(({ place, sentence }) => html`<li class="problem">${isNamed(place.join("."), sentence) ? ""
         : html`<code>${place.join(".")}</code> `}${sentence}</li>`)}</ul></div>`}
-    ${messagesOf(state).map(({ about: key, text, offer }) => html`<p class="notice" key=${key}><span>${text}</span>
+    ${messagesOf(state).map(({ about: key, text, offer, brief }) => html`<p class=${`notice ${brief ? "brief" : ""}`}
+      key=${key}><span>${text}</span>
       ${offer && html`<button type="button" class="edged" onClick=${() => {
         store.dispatch({ type: "closed", about: key });
         offer.act();

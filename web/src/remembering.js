@@ -151,10 +151,10 @@ export function studiesFirst(store, files) {
 /** Whether a table is one of results, not a record. @param {File} file */
 const isSummary = async (file) => file.name === "summary.csv" && /^layout,/.test(await file.slice(0, 100).text());
 
-/** Gives a message of what the page shows too; a newer one about the same is not closed with it.
+/** Gives a message of what the page shows too, which moves nothing; a newer one about the same is not closed with it.
  * @param {Store} store @param {string} text @param {string} about */
 function tellAWhile(store, text, about) {
-  store.say(text, about);
+  store.dispatch({ type: "said", text, about, brief: true });
   const said = store.get().messages.at(-1);
   setTimeout(() => store.get().messages.some((each) => each === said) && store.dispatch({ type: "closed", about }),
     READ);
@@ -199,7 +199,7 @@ async function openFit(store, api, file) {
  * @param {Store} store @param {Api} api @param {File} file */
 async function openRecord(store, api, file) {
   store.look({ tab: "rig", tall: true });
-  store.say(`Reading ${file.name}…`, file.name);
+  tellAWhile(store, `Reading ${file.name}…`, file.name);
   const record = await api.upload(`records?name=${encodeURIComponent(file.name)}`, file);
   store.dispatch({ type: "recorded", record });
   let told = `${file.name} was read.`;

@@ -255,6 +255,18 @@ test("a road passes at the speed of the vehicle, to the scale along it; under on
   assert.ok(words.some((text) => text?.endsWith("road length not to scale")));
 });
 
+test("whose body is which stands above a strut, however wide that is", () => {
+  let lines = 0;
+  always(({ name, made, motion, scene: { column } }, moment) => {
+    if (!column) return;
+    const said = captions(made, { moment, motion }, { own: "S3", other: "S1" }).filter(({ text }) => /S[13]/.test(text));
+    const top = Math.min(...made.struts.map((one) => endsOf(made, one, moment.pose).top));
+    lines += said.length;
+    for (const { y } of said) assert.ok(y < top, `${name}: ${y} is below ${top}`);
+  });
+  assert.ok(lines > 0);
+});
+
 test("roll that cannot be is said, and roll that is there is a number", () => {
   const words = (name) => {
     const { made, motion, moments } = of(name);

@@ -128,8 +128,8 @@ function ToOptimise({ state }) {
   const title = stale.length > 0 ? `Values of ${stale.join(", ")} were optimised before the study or its goal changed.`
     : `Nobody has chosen values of ${unchosen.join(", ")}.`;
   return html`<button type="button" class="stale" title=${title} onClick=${() =>
-    /** @type {HTMLElement | null} */ (document.querySelector("#find-best"))?.click()}>${
-    stale.length > 0 ? "Values not re-optimised" : "Values not chosen"}: <u>optimise all layouts</u></button>`;
+    /** @type {HTMLElement | null} */ (document.querySelector("#find-best"))?.click()}>
+    <u>Optimise all layouts</u></button>`;
 }
 
 /** The caveats, as many as there is room for; the others by a button that counts them.
@@ -137,17 +137,22 @@ function ToOptimise({ state }) {
 function Caveats({ caveats }) {
   const line = useRef(/** @type {HTMLDivElement | null} */ (null));
   const [fit, setFit] = useState(caveats.length);
+  const [isWrapped, setWrapped] = useState(false);
   useLayoutEffect(() => {
     const place = line.current;
     if (!place) return undefined;
-    const look = () => setFit(fitting(place));
+    const look = () => {
+      const fits = fitting(place);
+      setFit(fits);
+      setWrapped(fits === 0 && /** @type {HTMLElement} */ (place.closest(".verdict")?.firstChild).clientHeight < LINES);
+    };
     const sized = new ResizeObserver(look);
     sized.observe(place);
     return () => sized.disconnect();
   }, [JSON.stringify(caveats)]);
   if (caveats.length === 0) return null;
   const left = fit === 0 ? 0 : caveats.length - fit;
-  return html`<div class="caveats" ref=${line}>
+  return html`<div class=${`caveats ${isWrapped ? "wrapped" : ""}`} ref=${line}>
     ${caveats.map(({ sentence, severity }, i) => html`<span class="caveat" key=${sentence} title=${sentence}
       data-severity=${severity} hidden=${i >= fit && i > 0}>${sentence}</span>`)}
     ${fit < caveats.length && html`<details class="menu more">
@@ -157,15 +162,19 @@ function Caveats({ caveats }) {
 }
 
 const GAP = 6; // [px]
+const LINES = 30; // [px] a verdict of one line leaves room for a caveat of two
 const OTHERS = 64; // [px] of the button that counts those for which there is no room
 
 /** How many caveats fit into the line as a whole. @param {HTMLElement} line */
 function fitting(line) {
   const chips = /** @type {HTMLElement[]} */ ([...line.querySelectorAll(":scope > .caveat")]);
   const hidden = chips.map((chip) => chip.hidden);
+  const { className } = line;
+  line.className = "caveats"; // each on a line of its own
   for (const chip of chips) chip.hidden = false;
   const widths = chips.map((chip) => chip.scrollWidth + GAP);
   chips.forEach((chip, i) => { chip.hidden = hidden[i]; });
+  line.className = className;
   const whole = widths.reduce((sum, width) => sum + width, 0) <= line.clientWidth;
   let room = line.clientWidth - OTHERS;
   const first = widths.findIndex((width) => (room -= width) < 0);

@@ -159,7 +159,7 @@ function Fit({ store, api, job, main }) {
         html`<p key=${sentence}>${sentence}</p>`)}
       ${(result.findings ?? []).map((/** @type {string} */ each) => html`<p key=${each} class="quiet">${each}</p>`)}
       ${result.device
-        ? html`<p class="row">${several && "Take the device into the editor, in parallel with the"}
+        ? html`<p class="row">${several && "Take the device into the strut"}
           ${(several ? struts : [undefined]).map((strut) => html`<button type="button" key=${strut}
             class=${main && (!several || strut === struts[0]) ? "main" : "edged"}
             onClick=${() => void takeIn(store, api, result, strut)}>${strut ? strutWords([strut])

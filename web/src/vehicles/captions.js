@@ -59,9 +59,9 @@ function scaleBar({ lift, width }, narrow) {
 
 /** Whose body is which. @param {Layout} made @param {{own: string, other: string}} names @param {boolean} narrow
  * @param {number} below so many lines @returns {Shape[]} */
-function legend({ height, scene }, { own, other }, narrow, below) {
+function legend({ scene }, { own, other }, narrow, below) {
   const body = scene.column && scene.tracks.length > 0 ? "body on " : "";
-  const y = narrow ? 62 + 16 * below : scene.column ? Math.max(112, 0.31 * height) : 20 + 16 * below;
+  const y = (narrow ? 62 : 20) + 16 * below;
   const otherWords = `${body ? "on" : "dashed:"} ${shortLabel(other)}, same road`;
   if (!scene.column) return [line([[12, y - 4], [30, y - 4]], "other trail"), text(36, y, otherWords)];
   return [line([[12, y - 4], [30, y - 4]], "own"), text(36, y, `${body}${shortLabel(own)}`),

@@ -3,7 +3,7 @@
 There are two modes. The plain one, here, is `numba.njit` with documented options. The tuned one, in
 `inerter.kernels.numba_compiler`, compiles the same functions in half the time: it rests on private parts of Numba,
 which may change with any release. `decorators.compiler_mode` is the switch between them. Besides these two modules
-`numba_lanes` uses Numba, for numbers side by side and instructions, and `eigenproblem`, for a call of LAPACK.
+only `numba_lanes` uses Numba, for numbers side by side and instructions.
 """
 
 from __future__ import annotations

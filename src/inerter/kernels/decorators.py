@@ -39,13 +39,6 @@ def numba_internals() -> Any:
     return numba_compiler
 
 
-def numba_lanes() -> Any:
-    """The module with the compiler's type of several numbers side by side."""
-    from inerter.kernels import numba_lanes  # noqa: PLC0415 - heavy
-
-    return numba_lanes
-
-
 class Kernel:
     """A compiled function that Python calls, or other compiled code by its address; `title` names the result."""
 
@@ -99,7 +92,7 @@ class Kernel:
     def ready(self) -> Any:
         """The compiled function: for a kernel with a signature, compiled or read from the cache by now."""
         if self._compiled is None and compiler_mode() == NONE:
-            self._compiled = _without_warnings(self.function)
+            self._compiled = np.errstate(all="ignore")(self.function)  # without warnings, as compiled code
         if self._compiled is None:
             with report_if_long(f"compiling a numerical kernel ({self.title})"):
                 from inerter.kernels.compiler import compile_function  # noqa: PLC0415 - heavy
@@ -110,11 +103,6 @@ class Kernel:
     @property
     def _numba_type_(self) -> Any:
         return self.ready()._numba_type_
-
-
-def _without_warnings(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Python function without warnings of division by zero, as in compiled code."""
-    return np.errstate(all="ignore")(function)
 
 
 def kernel(
@@ -131,7 +119,7 @@ def kernel(
     With a `signature`, or `typed` by annotations, it can be made ready before it is called. A signature with a type
     that is returned is the only one; other arguments than those of one without it compile the function once more.
     `fused`: a product and a sum may become one instruction, with one rounding. `borrowing`: without reference counts.
-    What is only called `by_address`, see `function_at`, is not made ready for Python, which takes half of the time of
+    What is only called `by_address`, see `FunctionAt`, is not made ready for Python, which takes half of the time of
     a short one.
     """
 
@@ -212,26 +200,29 @@ def part(
 class Instruction:
     """Instruction for the compiler, as in `numba.extending.intrinsic`, with an equivalent plain function."""
 
-    def __init__(self, definition: Callable[..., Any], plain: Callable[..., Any]) -> None:
-        self.definition, self.plain = definition, getattr(plain, "function", plain)
+    def __init__(self, plain: Callable[..., Any]) -> None:
+        self.plain = plain
 
     def __call__(self, *args: Any) -> Any:
         return self.plain(*args)
 
     @cached_property
     def _numba_type_(self) -> Any:
-        return numba_internals().instruction_type(self.definition)
+        from inerter.kernels import numba_lanes  # noqa: PLC0415 - heavy
+
+        return numba_internals().instruction_type(getattr(numba_lanes, self.plain.__name__))
 
 
-def instruction(plain: Callable[..., Any]) -> Callable[[Callable[..., Any]], Any]:
-    """Declare an instruction: the definition gets the types of its arguments, and imports the compiler itself."""
-    return lambda definition: Instruction(definition, plain)
+def instruction(plain: F) -> F:
+    """Declare an instruction by its plain function; `numba_lanes` has the definition of the same name."""
+    return cast("F", Instruction(plain))
 
 
 class FunctionAt:
     """Compiled code that calls other compiled code of one type by its address; see `Part.plain` for code without."""
 
     def __init__(self, kind: Callable[..., Any]) -> None:
+        """Make the type of `kind`, a function with annotations."""
         self.signature, self._alive = _signature_from_annotations(kind), list[Any]()
 
     @cached_property
@@ -245,8 +236,3 @@ class FunctionAt:
         self._alive.append(function)  # its code goes with it
         address: int = numba_internals().address_of(function.ready(), self.signature)
         return address
-
-
-def function_at(kind: Callable[..., Any]) -> Any:
-    """Function of the type of `kind` at an address, for calls from compiled code."""
-    return FunctionAt(kind)

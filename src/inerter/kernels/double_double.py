@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.kernels.decorators import instruction, numba_lanes, part
+from inerter.kernels.decorators import instruction, part
 
 Array = Any
 
@@ -12,19 +12,13 @@ Array = Any
 _SPLIT = 134217729.0  # 2^27 + 1: parts a number into two of half its digits
 
 
-@part()
-def multiply_add_by_halves(a: float, b: float, product: float) -> float:
-    """Error a b + product of a rounded `-product` of a and b, by splitting both (Dekker, 1971)."""
+@instruction
+def fused_multiply_add(a: float, b: float, product: float) -> float:
+    """Error a b + product of a rounded `-product` of a and b, here by splitting both (Dekker, 1971)."""
     more, further = _SPLIT * a, _SPLIT * b
     a_high, b_high = more - (more - a), further - (further - b)
     a_low, b_low = a - a_high, b - b_high
     return ((a_high * b_high + product) + a_high * b_low + a_low * b_high) + a_low * b_low
-
-
-@instruction(multiply_add_by_halves)
-def fused_multiply_add(typing: Any, a: Any, b: Any, c: Any) -> Any:
-    """Compile a b + c with one rounding."""
-    return numba_lanes().fused_multiply_add(a, b, c)
 
 
 @part(borrowing=True, inside=True)

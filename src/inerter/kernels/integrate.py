@@ -24,7 +24,7 @@ from inerter.kernels.arrays import (
     MarchShape,
     Span,
 )
-from inerter.kernels.decorators import function_at, kernel, part
+from inerter.kernels.decorators import FunctionAt, kernel, part
 from inerter.kernels.lanes import GROUP, as_numbers, constant_at, in_groups, lane, larger, multiply_add, smaller
 
 BLOCK = 16  # steps that are judged together
@@ -357,7 +357,7 @@ def march_type(lines: MarchLines, knots: Knots, record: History, span: Span) -> 
     raise NotImplementedError
 
 
-march_at = function_at(march_type)
+march_at: Any = FunctionAt(march_type)
 
 
 @part(borrowing=True, apart=True)

@@ -1,4 +1,7 @@
-"""The compiler's type of numbers in several lanes (a vector of LLVM), its arithmetic, and the code of `lanes`."""
+"""The compiler's type of numbers in several lanes (a vector of LLVM), its arithmetic, and the code of instructions.
+
+A definition gets the typing context of the compiler and the types of its arguments.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,8 @@ from numba.core import typeconv as _typeconv
 from numba.core.registry import cpu_target
 from numba.core.typing import templates as _templates
 from numba.np import arrayobj as _arrays
+
+from inerter.kernels.lanes import GROUP, WIDTH
 
 types: Any = numba.types
 extending: Any = numba.extending
@@ -117,7 +122,7 @@ def _constant(context: Any, builder: Any, kind: Any, value: float) -> Any:
     return context.cast(builder, context.get_constant(types.float64, value), types.float64, kind)
 
 
-def is_between(x: Any, low: Any, high: Any) -> Definition:
+def is_between(typing: Any, x: Any, low: Any, high: Any) -> Definition:
     """Definition of `lanes.is_between`."""
     kind = _common(x, low, high)
 
@@ -129,7 +134,7 @@ def is_between(x: Any, low: Any, high: Any) -> Definition:
     return kind(kind, kind, kind), code
 
 
-def choose(condition: Any, x: Any, y: Any) -> Definition:
+def choose(typing: Any, condition: Any, x: Any, y: Any) -> Definition:
     """Definition of `lanes.choose`."""
     kind = _common(condition, x, y)
 
@@ -141,7 +146,7 @@ def choose(condition: Any, x: Any, y: Any) -> Definition:
     return kind(kind, kind, kind), code
 
 
-def larger(x: Any, y: Any) -> Definition:
+def larger(typing: Any, x: Any, y: Any) -> Definition:
     """Definition of `lanes.larger`."""
     kind = _common(x, y)
 
@@ -151,7 +156,7 @@ def larger(x: Any, y: Any) -> Definition:
     return kind(kind, kind), code
 
 
-def smaller(x: Any, y: Any) -> Definition:
+def smaller(typing: Any, x: Any, y: Any) -> Definition:
     """Definition of `lanes.smaller`."""
     kind = _common(x, y)
 
@@ -161,7 +166,7 @@ def smaller(x: Any, y: Any) -> Definition:
     return kind(kind, kind), code
 
 
-def largest_lane(x: Any) -> Definition:
+def largest_lane(typing: Any, x: Any) -> Definition:
     """Definition of `lanes.largest_lane`: halves against each other."""
 
     def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -177,7 +182,7 @@ def largest_lane(x: Any) -> Definition:
     return types.float64(_common(x)), code
 
 
-def lane(x: Any, j: Any) -> Definition:
+def lane(typing: Any, x: Any, j: Any) -> Definition:
     """Definition of `lanes.lane`."""
 
     def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -186,17 +191,17 @@ def lane(x: Any, j: Any) -> Definition:
     return types.float64(x, types.int64), code
 
 
-def root(x: Any) -> Definition:
+def root(typing: Any, x: Any) -> Definition:
     """Definition of `lanes.root`."""
     return _definition_of("llvm.sqrt", x)
 
 
-def fused_multiply_add(a: Any, b: Any, c: Any) -> Definition:
+def fused_multiply_add(typing: Any, a: Any, b: Any, product: Any) -> Definition:
     """Definition of `double_double.fused_multiply_add`."""
-    return _definition_of("llvm.fma", a, b, c)
+    return _definition_of("llvm.fma", a, b, product)
 
 
-def multiply_add(a: Any, b: Any, c: Any) -> Definition:
+def multiply_add(typing: Any, a: Any, b: Any, c: Any) -> Definition:
     """Definition of `lanes.multiply_add`."""
     return _definition_of("llvm.fmuladd", a, b, c)
 
@@ -210,20 +215,20 @@ def _definition_of(name: str, *operands: Any) -> Definition:
     return kind(*[kind] * len(operands)), code
 
 
-def in_lanes(flat: Any, shape: Any, width: int) -> Definition:
+def in_lanes(typing: Any, flat: Any, shape: Any) -> Definition:
     """Definition of `lanes.in_lanes`: the room is used from where the first line of the cache begins."""
-    kind = types.Array(lanes_type(width), shape.count, "C", aligned=False)
+    kind = types.Array(lanes_type(WIDTH), shape.count, "C", aligned=False)
 
     def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         room = arrays.make_array(flat)(context, builder, given[0])
         address = builder.add(builder.ptrtoint(room.data, cgutils.intp_t), cgutils.intp_t(_LINE - 1))
         start, sizes = builder.and_(address, cgutils.intp_t(-_LINE)), cgutils.unpack_tuple(builder, given[1])
-        return _view(context, builder, room, start, kind, sizes, 8 * width)
+        return _view(context, builder, room, start, kind, sizes, 8 * WIDTH)
 
     return kind(flat, shape), code
 
 
-def in_numbers(lanes: Any) -> Definition:
+def in_numbers(typing: Any, lanes: Any) -> Definition:
     """Definition of `lanes.in_numbers`."""
     kind, width = types.Array(types.float64, 2, "C"), lanes.dtype.width
 
@@ -235,8 +240,18 @@ def in_numbers(lanes: Any) -> Definition:
     return kind(lanes), code
 
 
-def over_numbers(array: Any, first: Any, shape: Any, width: int) -> Definition:
-    """Definition of `lanes.in_groups`, and with groups of one number, that of `lanes.as_numbers`."""
+def as_numbers(typing: Any, array: Any, first: Any, shape: Any) -> Definition:
+    """Definition of `lanes.as_numbers`."""
+    return _over_numbers(array, shape, 1)
+
+
+def in_groups(typing: Any, array: Any, first: Any, shape: Any) -> Definition:
+    """Definition of `lanes.in_groups`."""
+    return _over_numbers(array, shape, GROUP)
+
+
+def _over_numbers(array: Any, shape: Any, width: int) -> Definition:
+    """Numbers of an array in groups of this width."""
     kind = types.Array(lanes_type(width) if width > 1 else types.float64, shape.count, "C", aligned=False)
 
     def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -248,7 +263,7 @@ def over_numbers(array: Any, first: Any, shape: Any, width: int) -> Definition:
     return kind(array, types.int64, shape), code
 
 
-def constant_at(array: Any, i: Any, j: Any) -> Definition:
+def constant_at(typing: Any, array: Any, i: Any, j: Any) -> Definition:
     """Definition of `lanes.constant_at`: a load that no store can change."""
 
     def code(context: Any, builder: Any, signature: Any, given: Any) -> Any:
@@ -261,6 +276,26 @@ def constant_at(array: Any, i: Any, j: Any) -> Definition:
         return value
 
     return array.dtype(array, types.int64, types.int64), code
+
+
+def real_eigenvectors(typing: Any, transposed: Any, real: Any, imaginary: Any, rows: Any) -> Definition:
+    """Definition of `eigenproblem.real_eigenvectors`, by LAPACK's dgeev.
+
+    Numba's own `eig` takes matrices as complex for this, in twice the time; the call here is by the symbol that it
+    uses.
+    """
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        found = [arrays.make_array(t)(context, builder, a) for t, a in zip(signature.args, arguments, strict=True)]
+        a, wr, wi, vr = (builder.bitcast(array.data, cgutils.voidptr_t) for array in found)
+        n, one = cgutils.unpack_tuple(builder, found[1].shape, 1)[0], context.get_constant(types.intp, 1)
+        letters = [ir.Constant(ir.IntType(8), ord(letter)) for letter in "dNV"]
+        given = [*letters, n, a, n, wr, wi, vr, one, vr, n]  # left eigenvectors, not asked for, have no place
+        kind = ir.FunctionType(ir.IntType(32), [value.type for value in given])
+        info = builder.call(cgutils.get_or_insert_function(builder.module, kind, "numba_ez_rgeev"), given)
+        return builder.sext(info, ir.IntType(64))
+
+    return types.int64(transposed, real, imaginary, rows), code
 
 
 def _view(context: Any, builder: Any, room: Any, start: Any, kind: Any, sizes: list[Any], item: int) -> Any:

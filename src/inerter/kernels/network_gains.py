@@ -178,7 +178,7 @@ def _peak(n: int, roundings: float, space: GainSpace) -> Any:
 def _fill_peak(values: Array, program: Program, port: Port, space: GainSpace) -> Any:
     """Peak gain at element values, and its relative error."""
     n, last = port.forms[0, DEGREE], program.parts.shape[0] - 1
-    admittance(values, program, space.norms.network)
+    admittance(values, program, space.norms.network, False)
     fill_fraction(0, program, port, space.norms, False)
     fraction = space.norms.fraction
     for i in range(n + 1):

@@ -11,7 +11,7 @@ from inerter.kernels.astrom_jury import Recursion
 from inerter.kernels.decorators import kernel, part
 from inerter.kernels.lanes import WIDTH, in_lanes, in_numbers
 from inerter.kernels.network_norms import ACCURATE, NormSpace, Port, fill_squares, index_of, space_sizes
-from inerter.kernels.network_polynomials import Polynomials, Program, admittance, fine_admittance
+from inerter.kernels.network_polynomials import Polynomials, Program, admittance
 
 Array = Any
 
@@ -75,10 +75,7 @@ def indices_in_lanes(points: Matrix, program: Program, port: Port, errors: Float
             for lane in range(WIDTH):  # what is beyond the last design repeats it
                 numbers[leaf, lane] = points[leaf, first + min(lane, count - 1)]
         for fine in (False, True):
-            if fine:
-                fine_admittance(values, program, space.network)
-            else:
-                admittance(values, program, space.network)
+            admittance(values, program, space.network, fine)
             outcome[0] = fill_squares(program, port, space, fine)
             outcome[1] = index_of(space)
             unsure = False

@@ -14,16 +14,15 @@ import numpy as np
 from inerter.kernels.arrays import Floats, Ints, IntTable, Matrices, Matrix
 from inerter.kernels.astrom_jury import Recursion, backward, fine_forward, forward
 from inerter.kernels.decorators import kernel, part
-from inerter.kernels.double_double import add_product
 from inerter.kernels.lanes import is_between, larger, root
 from inerter.kernels.network_polynomials import (
     BOTTOM,
     TOP,
     Polynomials,
     Program,
+    add_product_of_polynomials,
     admittance,
     admittance_adjoint,
-    fine_admittance,
 )
 
 Array = Any
@@ -119,32 +118,6 @@ def norm_space(program: Program, port: Port) -> NormSpace:
 
 
 @part(borrowing=True)
-def _add_products(
-    result: Array,
-    low: Array,
-    fine: bool,
-    first: int,
-    p: Array,
-    p_low: Array,
-    degree: int,
-    q: Array,
-    q_low: Array,
-    of: int,
-) -> None:
-    """Add s^first p q to `result`, whose highest power comes first; see `fill_fraction`."""
-    for i in range(degree + 1):
-        for j in range(of + 1):
-            k = first - i - j
-            if fine:
-                high, rest = add_product(result[k], low[k], p[i], q[j])
-                rest += p[i] * q_low[j] + p_low[i] * q[j]
-                result[k] = high + rest
-                low[k] = rest - (result[k] - high)
-            else:
-                result[k] += p[i] * q[j]
-
-
-@part(borrowing=True)
 def fill_fraction(k: int, program: Program, port: Port, space: NormSpace, fine: bool) -> None:
     """Fill the coefficients of the fraction of function k, the highest power first."""
     network, fraction = space.network, space.fraction
@@ -164,12 +137,13 @@ def fill_fraction(k: int, program: Program, port: Port, space: NormSpace, fine: 
             poles = which < 2
             result, low = (fraction.a, fraction.a_low) if poles else (fraction.b, fraction.b_low)
             first = n + dropped if poles else n - 1 + dropped
+            p, p_low = own[which], own_low[which]
             if which % 2 == 0:
                 first -= power_D
-                _add_products(result, low, fine, first, own[which], own_low[which], degree, D, D_low, bottom)
+                add_product_of_polynomials(result, low, first, -1, p, p_low, degree, D, D_low, bottom, fine)
             else:
                 first -= power_N
-                _add_products(result, low, fine, first, own[which], own_low[which], degree, N, N_low, top)
+                add_product_of_polynomials(result, low, first, -1, p, p_low, degree, N, N_low, top, fine)
     for i in range(n + 1):
         fraction.a_error[i] = eps * fraction.a[i]
 
@@ -252,7 +226,7 @@ def _fill_differences(values: Array, program: Program, port: Port, space: NormSp
         at, known, difference = values[i], True, 0.0
         for sign in (1.0, -1.0):
             values[i] = at * (1.0 + sign * _DIFFERENCE)
-            fine_admittance(values, program, space.network)
+            admittance(values, program, space.network, True)
             known = known and fill_squares(program, port, space, True) <= ACCURATE
             for g in range(space.sums.size):
                 difference += sign * space.slopes[g] * np.sqrt(space.sums[g])
@@ -344,11 +318,11 @@ def _excess(i: int, trade_off: TradeOff, space: NormSpace) -> float:
 @part(borrowing=True)
 def _known_squares(values: Array, program: Program, port: Port, space: NormSpace) -> Any:
     """Fill the squared norms; their relative error, and whether they took twice the precision."""
-    admittance(values, program, space.network)
+    admittance(values, program, space.network, False)
     error, fine = fill_squares(program, port, space, False), False
     if not error <= ACCURATE:
         fine = True
-        fine_admittance(values, program, space.network)
+        admittance(values, program, space.network, True)
         error = fill_squares(program, port, space, True)
     return error, fine
 

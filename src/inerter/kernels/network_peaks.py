@@ -146,7 +146,7 @@ def _peaks_at(
     for leaf in range(variables.of_leaf.size):
         if variables.of_leaf[leaf] >= 0:
             variables.values[leaf] = np.exp(point[variables.of_leaf[leaf]])
-    admittance(variables.values, program, space.norms.network)
+    admittance(variables.values, program, space.norms.network, False)
     fill_fraction(0, program, port, space.norms, False)
     n, fraction = port.forms[0, DEGREE], space.norms.fraction
     low, high = np.inf, -np.inf

@@ -28,6 +28,7 @@ TREES = np.array(  # arms a, b, c, d, e by number: products of three in the nume
 FORESTS = np.array(  # and of two in its denominator
     [[0, 2], [0, 3], [1, 2], [1, 3], [0, 4], [1, 4], [2, 4], [3, 4]]
 )
+_ONE, _ZERO = np.ones(1), np.zeros(1)
 
 
 class Program(NamedTuple):
@@ -50,11 +51,33 @@ class Polynomials(NamedTuple):
 
 
 @part(borrowing=True)
-def _add_convolution(result: Array, shift: int, p: Array, p_degree: int, q: Array, q_degree: int) -> None:
-    """Add s^shift p q to `result`."""
+def add_product_of_polynomials(
+    result: Array,
+    low: Array,
+    first: int,
+    way: int,
+    p: Array,
+    p_low: Array,
+    p_degree: int,
+    q: Array,
+    q_low: Array,
+    q_degree: int,
+    fine: bool,
+) -> None:
+    """Add p q to `result`, its constant at place `first`, higher powers above (`way` is 1) or below it (-1).
+
+    If `fine`, in twice the precision, with what is to be added in `low`.
+    """
     for i in range(p_degree + 1):
         for j in range(q_degree + 1):
-            result[shift + i + j] += p[i] * q[j]
+            k = first + way * (i + j)
+            if fine:
+                high, rest = add_product(result[k], low[k], p[i], q[j])
+                rest += p[i] * q_low[j] + p_low[i] * q[j]
+                result[k] = high + rest
+                low[k] = rest - (result[k] - high)
+            else:
+                result[k] += p[i] * q[j]
 
 
 @part(borrowing=True)
@@ -74,62 +97,83 @@ def _clear(result: Array, degree: int) -> None:
 
 
 @part(borrowing=True)
+def _is_factor(term: int, arm: int, in_top: bool) -> bool:
+    """Whether a term of a bridge's n (or d) has the numerator of an arm as a factor, not its denominator."""
+    found = False
+    for i in range(3 if in_top else 2):
+        found = found or (TREES[term, i] if in_top else FORESTS[term, i]) == arm
+    return found
+
+
+@part(borrowing=True)
 def _bridge_product(
-    program: Program, room: Polynomials, row: int, term: int, in_top: bool, left_out: int, result: Array, spare: Array
+    program: Program, room: Polynomials, row: int, term: int, in_top: bool, left_out: int, fine: bool
 ) -> int:
-    """Fill `result` with a term of a bridge's n (or d) without its power of s, one arm left out; its degree."""
+    """Fill room.room[0] (and, if `fine`, [1]) with a term of a bridge's n (or d), one arm left out; its degree.
+
+    Without its power of s.
+    """
     parts, bridges = program
-    result[0], degree = 1.0, 0
+    work = room.room
+    work[0, 0], work[1, 0], degree = 1.0, 0.0, 0
     for arm in range(ARMS):
         if arm == left_out:
             continue
         child = bridges[row, arm]
-        chosen = False
-        if in_top:
-            for i in range(3):
-                chosen = chosen or TREES[term, i] == arm
+        if _is_factor(term, arm, in_top):
+            factor, low, own = room.top[child], room.top_low[child], parts[child, TOP]
         else:
-            for i in range(2):
-                chosen = chosen or FORESTS[term, i] == arm
-        factor, own = (room.top[child], parts[child, TOP]) if chosen else (room.bottom[child], parts[child, BOTTOM])
-        _clear(spare, degree + own)
-        _add_convolution(spare, 0, result, degree, factor, own)
+            factor, low, own = room.bottom[child], room.bottom_low[child], parts[child, BOTTOM]
+        _clear(work[2], degree + own)
+        if fine:
+            _clear(work[3], degree + own)
+        add_product_of_polynomials(work[2], work[3], 0, 1, work[0], work[1], degree, factor, low, own, fine)
         degree += own
         for i in range(degree + 1):
-            result[i] = spare[i]
+            work[0, i] = work[2, i]
+            if fine:
+                work[1, i] = work[3, i]
     return degree
 
 
 @part(borrowing=True)
-def admittance(values: Array, program: Program, room: Polynomials) -> None:
-    """Fill `room` with numerator and denominator of every part, for the element values (leaves,) [SI]."""
+def admittance(values: Array, program: Program, room: Polynomials, fine: bool) -> None:
+    """Fill `room` with numerator and denominator of every part, for the element values (leaves,) [SI].
+
+    If `fine`, in twice the precision.
+    """
     parts, bridges = program
     for k in range(parts.shape[0]):
-        top, bottom = room.top[k], room.bottom[k]
+        top, bottom, top_low, bottom_low = room.top[k], room.bottom[k], room.top_low[k], room.bottom_low[k]
         operation, first, second = parts[k, OPERATION], parts[k, FIRST], parts[k, SECOND]
+        _clear(top, parts[k, TOP])
+        _clear(bottom, parts[k, BOTTOM])
+        if fine:
+            _clear(top_low, parts[k, TOP])
+            _clear(bottom_low, parts[k, BOTTOM])
         if operation == LEAF:
             top[0], bottom[0] = values[first], 1.0
             continue
-        _clear(top, parts[k, TOP])
-        _clear(bottom, parts[k, BOTTOM])
         if operation == BRIDGE:
+            work = room.room
             for term in range(SPANNING):
-                degree = _bridge_product(program, room, first, term, True, -1, room.room[0], room.room[1])
-                for i in range(degree + 1):
-                    top[bridges[first, ARMS + term] + i] += room.room[0, i]
-                degree = _bridge_product(program, room, first, term, False, -1, room.room[0], room.room[1])
-                for i in range(degree + 1):
-                    bottom[bridges[first, ARMS + SPANNING + term] + i] += room.room[0, i]
+                degree = _bridge_product(program, room, first, term, True, -1, fine)
+                shift = bridges[first, ARMS + term]
+                add_product_of_polynomials(top, top_low, shift, 1, work[0], work[1], degree, _ONE, _ZERO, 0, fine)
+                degree = _bridge_product(program, room, first, term, False, -1, fine)
+                shift = bridges[first, ARMS + SPANNING + term]
+                add_product_of_polynomials(bottom, bottom_low, shift, 1, work[0], work[1], degree, _ONE, _ZERO, 0, fine)
             continue
         n1, d1, n2, d2 = room.top[first], room.bottom[first], room.top[second], room.bottom[second]
+        l1, m1, l2, m2 = room.top_low[first], room.bottom_low[first], room.top_low[second], room.bottom_low[second]
         N1, D1, N2, D2 = parts[first, TOP], parts[first, BOTTOM], parts[second, TOP], parts[second, BOTTOM]
-        mixed, product = (top, bottom) if operation == PARALLEL else (bottom, top)
-        _add_convolution(mixed, parts[k, SHIFT_FIRST], n1, N1, d2, D2)
-        _add_convolution(mixed, parts[k, SHIFT_SECOND], n2, N2, d1, D1)
+        mixed, mixed_low = (top, top_low) if operation == PARALLEL else (bottom, bottom_low)
+        add_product_of_polynomials(mixed, mixed_low, parts[k, SHIFT_FIRST], 1, n1, l1, N1, d2, m2, D2, fine)
+        add_product_of_polynomials(mixed, mixed_low, parts[k, SHIFT_SECOND], 1, n2, l2, N2, d1, m1, D1, fine)
         if operation == PARALLEL:
-            _add_convolution(product, 0, d1, D1, d2, D2)
+            add_product_of_polynomials(bottom, bottom_low, 0, 1, d1, m1, D1, d2, m2, D2, fine)
         else:
-            _add_convolution(product, 0, n1, N1, n2, N2)
+            add_product_of_polynomials(top, top_low, 0, 1, n1, l1, N1, n2, l2, N2, fine)
 
 
 @part(borrowing=True)
@@ -178,93 +222,9 @@ def _bridge_adjoint(program: Program, room: Polynomials, k: int, adjoint: Array,
     shifts = ARMS if in_top else ARMS + SPANNING
     for term in range(SPANNING):
         for arm in range(ARMS):
-            degree = _bridge_product(program, room, row, term, in_top, arm, room.room[0], room.room[1])
+            degree = _bridge_product(program, room, row, term, in_top, arm, False)
             child = bridges[row, arm]
-            chosen = False
-            for i in range(3 if in_top else 2):
-                chosen = chosen or (TREES[term, i] if in_top else FORESTS[term, i]) == arm
+            chosen = _is_factor(term, arm, in_top)
             target = room.top_adjoint[child] if chosen else room.bottom_adjoint[child]
             own = parts[child, TOP] if chosen else parts[child, BOTTOM]
             _add_correlation(target, bridges[row, shifts + term], adjoint, room.room[0], degree, own)
-
-
-@part(borrowing=True)
-def _add_fine_convolution(
-    result: Array, low: Array, shift: int, p: Array, p_low: Array, p_degree: int, q: Array, q_low: Array, q_degree: int
-) -> None:
-    """Add s^shift p q to `result` in twice the precision."""
-    for i in range(p_degree + 1):
-        for j in range(q_degree + 1):
-            k = shift + i + j
-            high, rest = add_product(result[k], low[k], p[i], q[j])
-            rest += p[i] * q_low[j] + p_low[i] * q[j]
-            result[k] = high + rest
-            low[k] = rest - (result[k] - high)
-
-
-@part(borrowing=True)
-def _fine_bridge_product(program: Program, room: Polynomials, row: int, term: int, in_top: bool, work: Array) -> int:
-    """A term of a bridge in the first two rows of `work`, in twice the precision; its degree."""
-    parts, bridges = program
-    work[0, 0], work[1, 0], degree = 1.0, 0.0, 0
-    for arm in range(ARMS):
-        child = bridges[row, arm]
-        chosen = False
-        for i in range(3 if in_top else 2):
-            chosen = chosen or (TREES[term, i] if in_top else FORESTS[term, i]) == arm
-        if chosen:
-            factor, low, own = room.top[child], room.top_low[child], parts[child, TOP]
-        else:
-            factor, low, own = room.bottom[child], room.bottom_low[child], parts[child, BOTTOM]
-        _clear(work[2], degree + own)
-        _clear(work[3], degree + own)
-        _add_fine_convolution(work[2], work[3], 0, work[0], work[1], degree, factor, low, own)
-        degree += own
-        for i in range(degree + 1):
-            work[0, i], work[1, i] = work[2, i], work[3, i]
-    return degree
-
-
-@part(borrowing=True)
-def _add_fine(result: Array, low: Array, shift: int, p: Array, p_low: Array, degree: int) -> None:
-    for i in range(degree + 1):
-        high, rest = add_product(result[shift + i], low[shift + i], 1.0, p[i])
-        rest += p_low[i]
-        result[shift + i] = high + rest
-        low[shift + i] = rest - (result[shift + i] - high)
-
-
-@part(borrowing=True)
-def fine_admittance(values: Array, program: Program, room: Polynomials) -> None:
-    """Fill `room` with the polynomials of every part in twice the precision; see `admittance`."""
-    parts, bridges = program
-    for k in range(parts.shape[0]):
-        top, bottom, top_low, bottom_low = room.top[k], room.bottom[k], room.top_low[k], room.bottom_low[k]
-        operation, first, second = parts[k, OPERATION], parts[k, FIRST], parts[k, SECOND]
-        for i in range(parts[k, TOP] + 1):
-            top[i], top_low[i] = 0.0, 0.0
-        for i in range(parts[k, BOTTOM] + 1):
-            bottom[i], bottom_low[i] = 0.0, 0.0
-        if operation == LEAF:
-            top[0], bottom[0] = values[first], 1.0
-            continue
-        if operation == BRIDGE:
-            for term in range(SPANNING):
-                degree = _fine_bridge_product(program, room, first, term, True, room.room)
-                _add_fine(top, top_low, bridges[first, ARMS + term], room.room[0], room.room[1], degree)
-                degree = _fine_bridge_product(program, room, first, term, False, room.room)
-                shift = bridges[first, ARMS + SPANNING + term]
-                _add_fine(bottom, bottom_low, shift, room.room[0], room.room[1], degree)
-            continue
-        n1, d1, n2, d2 = room.top[first], room.bottom[first], room.top[second], room.bottom[second]
-        l1, m1, l2, m2 = room.top_low[first], room.bottom_low[first], room.top_low[second], room.bottom_low[second]
-        N1, D1, N2, D2 = parts[first, TOP], parts[first, BOTTOM], parts[second, TOP], parts[second, BOTTOM]
-        shift_first, shift_second = parts[k, SHIFT_FIRST], parts[k, SHIFT_SECOND]
-        if operation == PARALLEL:
-            _add_fine_convolution(top, top_low, shift_first, n1, l1, N1, d2, m2, D2)
-            _add_fine_convolution(top, top_low, shift_second, n2, l2, N2, d1, m1, D1)
-            _add_fine_convolution(bottom, bottom_low, 0, d1, m1, D1, d2, m2, D2)
-        else:
-            _add_fine_convolution(bottom, bottom_low, shift_first, n1, l1, N1, d2, m2, D2)
-            _add_fine_convolution(bottom, bottom_low, shift_second, n2, l2, N2, d1, m1, D1)
-            _add_fine_convolution(top, top_low, 0, n1, l1, N1, n2, l2, N2)

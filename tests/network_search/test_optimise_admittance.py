@@ -157,7 +157,7 @@ def test_a_half_car_under_a_random_force():
 
 def test_a_value_that_is_not_that_of_the_network_is_told():
     best = it.optimise_admittance(car(it.Spring(120e3) | ANY), INDICES["J1"], 1, starts=10)
-    assert "differs from that of the network" in str(replace(best, value=best.value * 1.01).status)
+    assert "differs from that of the design" in str(replace(best, value=best.value * 1.01).status)
     assert "has no network" in str(replace(best, numerator=(-1.0,), denominator=(1.0,)).status)
 
 

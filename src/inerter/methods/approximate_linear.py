@@ -141,7 +141,10 @@ class ApproximateLinear(FormerMethodNames):
         ]
         if not always and not _is_nonlinear(mechanism):
             return [self._estimate_linear(mechanism, definition) for definition in definitions]
-        linears = [self._equivalent_linear_model(mechanism, definition) for definition in definitions]
+        linears = [
+            None if self._raw else equivalent_linear_model(mechanism, definition, conventions)
+            for definition in definitions
+        ]
         drives = [self._drive(mechanism, definition) for definition in definitions]
         driven = [definition.drive.excited_mechanism(mechanism) for definition in definitions]
         moved = [(one.ground_moves, drive) for one, drive in zip(driven, drives, strict=True)]
@@ -202,21 +205,14 @@ class ApproximateLinear(FormerMethodNames):
         rms = excitation.rms or (_ROAD_RMS if on_road else _FORCE_RMS * _inertia_felt(driven, paths[0].input))
         return ExcitedInputs(excitation, rms, tuple(delays.get(name) for name in input_names(driven)))
 
-    def _equivalent_linear_model(
-        self, mechanism: Mechanism, definition: IndexDefinition
-    ) -> EquivalentLinearModel | None:
-        """Equivalent linear model with free dampers; None if there is none, or with raw gains."""
-        return None if self._raw else equivalent_linear_model(mechanism, definition, CONVENTIONS[self.conventions])
-
     def _estimate_from_runs(
         self, definition: IndexDefinition, linear: EquivalentLinearModel | None, runs: Runs
     ) -> Estimate:
         notes: tuple[str, ...] = ()
         if definition.amplitude is not None:
             notes = ("the amplitude of a sine is ignored: the excitation sets the size",)
-        count, estimate = int(self.realisations), None
-        while estimate is None or not self._is_settled(estimate, count):
-            count = count if estimate is None else min(2 * count, _MOST)
+        count = int(self.realisations)
+        while True:
             squares, inputs = runs.upto(count)
             if not runs.status.ok:
                 return Estimate(math.nan, definition.unit, runs.status, notes=notes)
@@ -225,6 +221,9 @@ class ApproximateLinear(FormerMethodNames):
             gains = _gains(squares[:, places], inputs[:, None], pooled)
             factor = _factor(definition, definition.input_paths(runs.system.mechanism)[0], runs)
             estimate, peaked = self._from_gains(definition, linear, gains * factor, runs)
+            if self.relative_error is None or count >= _MOST or self._is_accurate_enough(estimate):
+                break
+            count = min(2 * count, _MOST)
         near = factor * self._near_peak(estimate, runs.drive)
         jumps = 0.0 if self._raw else runs.sampling_error(places, near)  # of raw gains instants are a part
         stepped = ErrorSource("time step", _STEPPED + jumps)
@@ -276,9 +275,6 @@ class ApproximateLinear(FormerMethodNames):
         period = format_quantity(drive.excitation.period, "s", 6)
         message = f"a period of {period} is too short for the motion at {at}, which decays by {decay}; use a longer one"
         return Estimate(math.nan, definition.unit, Status(StatusKind.INACCURATE, message)), 0.0
-
-    def _is_settled(self, estimate: Estimate, count: int) -> bool:
-        return self.relative_error is None or count >= _MOST or self._is_accurate_enough(estimate)
 
     def _is_accurate_enough(self, estimate: Estimate) -> bool:
         error, asked = estimate.standard_error or 0.0, self.relative_error or math.inf

@@ -174,8 +174,8 @@ class OverConditions(OfIndex):
         status = worst_of(one.status for one in found)
         notes = tuple(dict.fromkeys(note for one in found for note in one.notes))
         if self.worst:
-            values = [one.value for one in found]
-            worst = found[int(np.argmax(values))] if np.all(np.isfinite(values)) else found[_least_known(values)]
+            unknown = (one for one in found if not np.isfinite(one.value))
+            worst = next(unknown, None) or max(found, key=lambda one: one.value)
             sources = of_worst(found, worst.value)
             over = dataclasses.replace(worst, status=status, notes=notes, error_sources=sources)
         else:
@@ -212,11 +212,6 @@ def values_changed(index: IndexLike) -> frozenset[str]:
 
 def _estimate_case(method: Method, case: tuple[Vehicle, IndexLike]) -> Estimate:
     return estimate_of(*case, method)
-
-
-def _least_known(values: Sequence[float]) -> int:
-    """The first value that is not finite."""
-    return next(i for i, value in enumerate(values) if not np.isfinite(value))
 
 
 def _mean(found: Sequence[Estimate], conditions: Conditions, status: Status, notes: tuple[str, ...]) -> Estimate:

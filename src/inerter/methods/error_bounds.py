@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from inerter.methods.method import Estimate
 
 ROUNDING = "rounding"
+_SAME = 1e-6  # relative difference up to which a search and the method itself have the same value
 Effects = Mapping[str, Sequence[float]]  # effects of errors of a road on a value, by source
 STAND_INS = 0.1  # relative error of a value that is ok by what stands in for its excitation, such as a line for a road
 
@@ -27,6 +28,15 @@ def with_error_sources(estimate: Estimate, own: Sequence[ErrorSource], promise: 
     """
     status, sources = judge_errors(estimate.value, estimate.status, own, estimate.error_sources, promise)
     return replace(estimate, status=status, error_sources=sources)
+
+
+def with_verified_value(estimate: Estimate, searched: float) -> Estimate:
+    """The estimate of a design, inaccurate where it differs from the value by which a search found the design."""
+    if not estimate.status.ok or abs(estimate.value - searched) <= _SAME * abs(searched):
+        return estimate
+    one, other = format_alike([searched, estimate.value], estimate.unit)
+    message = f"the value of the search, {one}, differs from that of the design, {other}"
+    return replace(estimate, status=Status(StatusKind.INACCURATE, message))
 
 
 def judge_errors(

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from inerter.errors import DesignError, Status, StatusKind, SynthesisError
-from inerter.formatting import format_alike
 from inerter.kernels.network_norms import Port, admittance_indices
 from inerter.kernels.network_polynomials import Program
 from inerter.methods.composite_index import IndexLike, is_composite
+from inerter.methods.error_bounds import with_verified_value
 from inerter.methods.method import Estimate, evaluate
 from inerter.methods.network_norm import NetworkIndex, admittance_program
 from inerter.methods.norm import EXACT_NORM
@@ -35,7 +35,6 @@ _MOST = 10  # degree
 _STARTS = 25  # of degree 0
 _LIMITS = {1e-12: "no network", 1e12: "a rigid link"}  # by the factor of an admittance that comes close to it
 _SAME = 1e-9  # relative difference of values
-_AGREES = 1e-6  # relative difference between the index of the admittance and that of the network
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,14 +89,9 @@ class AdmittanceResult:
     def status(self) -> Status:
         """Whether the design of the realised network has this value."""
         try:
-            estimate = self.estimate
+            return with_verified_value(self.estimate, self.value).status
         except SynthesisError as error:
             return Status(StatusKind.INACCURATE, f"the admittance has no network: {error}")
-        if not estimate.status.ok or abs(estimate.value - self.value) <= _AGREES * abs(self.value):
-            return estimate.status
-        one, other = format_alike([self.value, estimate.value], self.unit)
-        message = f"the value of the search, {one}, differs from that of the network, {other}"
-        return Status(StatusKind.INACCURATE, message)
 
 
 def optimise_admittance(

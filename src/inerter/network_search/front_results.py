@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from inerter.errors import OK, Status, StatusKind, worst_of
-from inerter.formatting import format_alike
+from inerter.errors import Status, StatusKind, worst_of
 from inerter.methods.composite_index import estimate_of
+from inerter.methods.error_bounds import with_verified_value
 from inerter.methods.method import Estimate
 from inerter.network_search.results import SearchResult
 from inerter.networks.enumeration import Topology
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from inerter.network_search.plan import SearchPlan
 
 Array = NDArray[np.float64]
-_AGREES = 1e-6  # relative difference up to which the search and the method itself have the same value
 
 
 @dataclass(frozen=True)
@@ -73,15 +72,9 @@ class FrontNetwork:
     @cached_property
     def status(self) -> Status:
         """Whether the search is sure of the design, and whether it has these values by the method itself."""
-        bad = worst_of(one.status for one in self.estimates)
-        if not bad.ok:
-            return bad
-        for value, estimate in zip(self.values, self.estimates, strict=True):
-            if abs(estimate.value - value) > _AGREES * abs(value):
-                one, other = format_alike([value, estimate.value], estimate.unit)
-                message = f"the value of the search, {one}, differs from that of the design, {other}"
-                return Status(StatusKind.INACCURATE, message)
-        return Status(StatusKind.INACCURATE, self.doubt) if self.doubt else OK
+        pairs = zip(self.estimates, self.values, strict=True)
+        worst = worst_of(with_verified_value(*pair).status for pair in pairs)
+        return Status(StatusKind.INACCURATE, self.doubt) if worst.ok and self.doubt else worst
 
 
 @dataclass(frozen=True, eq=False)

@@ -247,7 +247,8 @@ def front_waves(
                 del left[task.topology]
             n_searched += len(tasks)
         smaller = [one for one in ends if one.topology.size <= size]
-        fronts[size] = _non_dominated(scale, [*found.designs(), *_ends_of_front(scale, smaller)])
+        best = [_best_in(smaller, index).designs[index] for index in range(len(scale.ideal))]
+        fronts[size] = _non_dominated(scale, [*found.designs(), *best])
     return collect_front(plan.plans, searches, fronts, n_searched, len(ends) - n_searched, reasons)
 
 
@@ -394,10 +395,6 @@ class _Winners:
     def designs(self) -> list[FrontDesign]:
         """The best design at each aim."""
         return [one for one in self._best if one is not None]
-
-
-def _ends_of_front(scale: FrontScale, ends: Sequence[_SingleOptima]) -> list[FrontDesign]:
-    return [_best_in(ends, index).designs[index] for index in range(len(scale.ideal))]
 
 
 def _non_dominated(scale: FrontScale, designs: Sequence[FrontDesign]) -> list[FrontDesign]:

@@ -20,7 +20,7 @@ from inerter.methods.method import Method, check_request
 from inerter.methods.network_norm import PLACE, TRIED, NetworkIndex, network_index, network_kernel
 from inerter.methods.norm import is_exact_norm
 from inerter.network_search.network_optimum import SearchedNetwork
-from inerter.networks.elements import Damper, Element, Free, Network, Spring, free
+from inerter.networks.elements import Damper, Free, Network, Spring, free
 from inerter.networks.enumeration import Topology
 from inerter.networks.free_network import FreeNetwork, free_networks, with_free_networks
 from inerter.optimisation.limits import Limit, check_limits
@@ -122,8 +122,10 @@ def plan_search(
             f"A search needs a design with one free network, such as Spring(120e3) | any_network(4, ...); got {found}."
         )
     place, limits = places[0], check_limits(subject_to)
+    kind, ends = next(iter(place.bounds.items()))
+    element = with_chosen_network(vehicle, place, kind.of(free(*ends), PLACE))
     for asked in (index, *(limit.of for limit in limits)):
-        check_request(with_chosen_network(vehicle, place, _probe(place)), asked, method)
+        check_request(element, asked, method)
     plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
     if not plan.topologies:
         raise DesignError(f"There is no network to search: {place!r} leaves out all of them.")
@@ -159,11 +161,6 @@ def places_of(vehicle: Vehicle) -> list[FreeNetwork]:
 def with_chosen_network(vehicle: Vehicle, place: FreeNetwork, network: Network) -> Vehicle:
     """The vehicle with a network in the place of its free network."""
     return with_networks(vehicle, lambda mounted: with_free_networks(mounted, {place: network}))
-
-
-def _probe(place: FreeNetwork) -> Element:
-    kind, ends = next(iter(place.bounds.items()))
-    return kind.of(free(*ends), PLACE)
 
 
 def search_group(plan: SearchPlan, group: Iterable[Topology]) -> list[SearchedNetwork]:

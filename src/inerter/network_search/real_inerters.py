@@ -74,12 +74,8 @@ def check_found(found: object) -> None:
         raise DesignError(f"Expected a network of a search, such as search(...).ranking[0], got {found!r}.")
 
 
-def with_real_inerters(found: FoundNetwork, real: RealInerter, friction: float = 0.0) -> Vehicle:
-    """The design of a network with real inerters in it; inerters elsewhere in the vehicle stay as they are."""
-    return _with_real_inerters(found.design, found, real, friction)
-
-
 def _with_real_inerters(vehicle: Vehicle, found: FoundNetwork, real: RealInerter, friction: float) -> Vehicle:
+    """A design of a network with real inerters in it; inerters elsewhere in the vehicle stay as they are."""
     names = found.topology.names(found.plan.taken_names)
 
     def change(element: Element) -> Network:
@@ -93,7 +89,7 @@ def estimate_with_real_inerters(
     found: FoundNetwork, method: Method, real: RealInerter, friction: float = 0.0
 ) -> Estimate:
     """The index of a network with real inerters, its values as they are; "infeasible" where they break a constraint."""
-    design, plan = with_real_inerters(found, real, friction), found.plan
+    design, plan = _with_real_inerters(found.design, found, real, friction), found.plan
     held = constraints_at(design, plan.limits, method)
     estimate = with_limits(estimate_of(design, plan.index, method), held)
     return replace(estimate, status=worst_of((broken(held), estimate.status)))

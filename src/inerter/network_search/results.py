@@ -10,8 +10,8 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from inerter.errors import OK, DesignError, NetworkError, Status, StatusKind
-from inerter.formatting import format_alike
 from inerter.methods.composite_index import estimate_of
+from inerter.methods.error_bounds import with_verified_value
 from inerter.methods.method import Estimate
 from inerter.network_search.network_optimum import SearchedNetwork
 from inerter.networks.enumeration import BRIDGE, PARALLEL, SERIES, Topology, Tree
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 TIED = 1e-8  # relative difference up to which two networks have the same value
 _LIKE = 1e-3  # the same for a network and what is left of it without elements at their bounds
 _VERIFIED = 20  # networks from the best whose values are computed once more by the method itself
-_AGREES = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,14 +225,9 @@ def _to_found_network(
 
 def _verify(found: FoundNetwork) -> FoundNetwork:
     """The network with the status of its value by the method itself."""
-    estimate = found.estimate
-    if not found.status.ok or not estimate.status.ok:
-        return found if not found.status.ok else replace(found, status=estimate.status)
-    if abs(estimate.value - found.value) <= _AGREES * abs(found.value):
+    if not found.status.ok:
         return found
-    one, other = format_alike([found.value, estimate.value], found.unit)
-    message = f"the value of the search, {one}, differs from that of the design, {other}"
-    return replace(found, status=Status(StatusKind.INACCURATE, message))
+    return replace(found, status=with_verified_value(found.estimate, found.value).status)
 
 
 def reduced_topology(topology: Topology, at_bounds: Sequence[str]) -> Topology | None:

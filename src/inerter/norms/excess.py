@@ -91,7 +91,8 @@ def excess_squares(system: LinearSystem, excesses: Excesses, pade_order: int | N
         wide = wide[np.argsort(-share[wide], kind="stable")]
         resolved = wide[np.cumsum(1.0 + turns[wide]) <= _MOST_PANELS]
         unsure = unsure + 2.0 * np.abs(more[np.setdiff1d(wide, resolved)]).max(axis=1, initial=0.0).sum(axis=0)
-        finer = [_equal_panels(float(panels[i, 0]), float(panels[i, 1]), 1 + int(turns[i])) for i in np.sort(resolved)]
+        edges = [np.linspace(panels[i, 0], panels[i, 1], 2 + int(turns[i])) for i in np.sort(resolved)]
+        finer = [np.column_stack([several[:-1], several[1:]]) for several in edges]
         fine = [_on_panels(densities, part)[1] for part in _in_parts(finer)]
         more = np.concatenate([np.delete(more, resolved, axis=0), *fine])
     added = added + (_KRONROD @ more).sum(axis=0)
@@ -121,12 +122,6 @@ def _modes(system: LinearSystem) -> tuple[NDArray[np.complex128], Array, float]:
         residues = np.abs((system.C * scale) @ right)[:, :, None] * np.abs(driven)
     rounding = len(A) * _EPS * float(np.abs(A).sum(axis=1).max())
     return poles, np.nan_to_num(residues, nan=np.inf, posinf=np.inf), rounding
-
-
-def _equal_panels(low: float, high: float, count: int) -> Array:
-    """Panels (count, 2) of equal width."""
-    edges = np.linspace(low, high, count + 1)
-    return np.column_stack([edges[:-1], edges[1:]])
 
 
 def _in_parts(panels: Sequence[Array]) -> list[Array]:

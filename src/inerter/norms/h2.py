@@ -95,7 +95,8 @@ def _of_matrices(system: LinearSystem, pade_order: int | None) -> H2:
     seen = parts.visible() if parts.poles.size else np.zeros(len(system.outputs), dtype=bool)
     part, drifts = parts.decaying, False
     if np.any(seen) and parts.poles.size == np.sum(_drifting(system.A)):
-        drifts = np.allclose(_per_source(system, system.B[_drifting(system.A)]), 0.0, atol=1e-13)
+        same = np.array([[a == b for b in system.sources] for a in system.sources], dtype=float)
+        drifts = np.allclose(system.B[_drifting(system.A)] @ same, 0.0, atol=1e-13)  # where those of a source cancel
     A, B, C = (system.A, system.B, system.C) if drifts else (part.A, part.B, part.C)
     seen = seen & (not drifts)
     given = LinearSystem(A, B, C, system.D, delays=system.delays, sources=system.sources)
@@ -123,12 +124,6 @@ def _merged_direct(system: LinearSystem) -> Matrix:
 def _drifting(A: Matrix) -> NDArray[np.bool_]:
     """States driven by the inputs alone, such as a tyre's share of the road profile."""
     return np.asarray(~np.logical_or.reduce(A, axis=1))
-
-
-def _per_source(system: LinearSystem, B: Matrix) -> Matrix:
-    """Input columns summed over all columns of the same source, as without delays; a drift cancels if zero."""
-    same = np.array([[a == b for b in system.sources] for a in system.sources], dtype=float)
-    return np.asarray(B @ same)
 
 
 def drift_covariance(B: Matrix, delays: Matrix, sources: Sequence[str]) -> Matrix | None:

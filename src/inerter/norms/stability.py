@@ -56,7 +56,7 @@ class Split:
     def status(self) -> Status:
         """Status of the lasting poles: unstable or marginal."""
         worst = self.poles[int(np.argmax(self.poles.real))]
-        if worst.real > 0.0 and not _is_marginal(worst, self.rate):
+        if worst.real > max(1e-13 * self.rate + 1e-9 * abs(worst.imag), 0.0):
             return Status(StatusKind.UNSTABLE, f"unstable system: a pole at {format_complex(worst)} rad/s")
         return Status(StatusKind.MARGINAL, f"undamped mode: a pole at {format_complex(worst)} rad/s")
 
@@ -132,7 +132,3 @@ def pole_rates(A: Matrix) -> tuple[Matrix, Matrix]:
 
 def _norms(matrix: Matrix, axis: int) -> Matrix:
     return np.asarray(np.linalg.norm(matrix, axis=axis), dtype=float)
-
-
-def _is_marginal(worst: complex, rate: float) -> bool:
-    return abs(worst.real) <= 1e-13 * rate + 1e-9 * abs(worst.imag)

@@ -18,6 +18,7 @@ from inerter.formatting import format_alike, format_quantity, typeset
 from inerter.methods.compare import Comparison, Known, compare
 from inerter.methods.compiled_norm import CompiledNorm
 from inerter.methods.composite_index import IndexLike, estimate_of, is_composite, objective_of
+from inerter.methods.error_bounds import with_verified_value
 from inerter.methods.method import Estimate, Method, NonlinearitySupport, check_request
 from inerter.methods.multisine_lines import SampledObjective
 from inerter.methods.network_norm import TRIED, index_over_strut
@@ -244,7 +245,7 @@ def _best(
     held = constraint_results(
         problem, design, method, point, known=quick and best.excess <= kept and np.isfinite(best.value)
     )
-    estimate = over_linear.first if over_linear else _verify_estimate(estimate_of(design, index, method), best.value)
+    estimate = over_linear.first if over_linear else with_verified_value(estimate_of(design, index, method), best.value)
     estimate = with_limits(estimate, held)
     if estimate.status.ok and max(lowest, default=0.0) > lowest_known * (1.0 + AGREEMENT):
         estimate = replace(estimate, status=_many_optima_status(lowest, estimate.unit, quick))
@@ -544,12 +545,3 @@ def active_bounds(free: Mapping[str, Free], parameters: Mapping[str, float]) -> 
         elif place > 1.0 - _AT_BOUND:
             active[name] = "upper"
     return active
-
-
-def _verify_estimate(estimate: Estimate, searched: float) -> Estimate:
-    """The estimate, with a status if it differs from the value of the search."""
-    if not estimate.status.ok or abs(estimate.value - searched) <= 1e-6 * abs(searched):
-        return estimate
-    found, exact = format_alike([searched, estimate.value], estimate.unit)
-    message = f"the value of the search, {found}, differs from the exact value of the design, {exact}"
-    return replace(estimate, status=Status(StatusKind.INACCURATE, message))

@@ -52,7 +52,7 @@ Array = NDArray[np.float64]
 _MOST_POINTS = 10_000
 _NO_CONFLICT = 1e-6  # relative size of a trade-off up to which there is none
 _SHIFT = 3.0  # added to normalised criteria, so that they have logarithms
-_SLACK = 1e-6  # tolerance of a normalised criterion
+_SLACK, _KEPT = 1e-6, 1e-6  # tolerances of a normalised criterion, and of a constraint
 _WIDE, _DOUBTED = 1.6, 1.2  # of the typical gap: those that are filled, and those tested for a discontinuity
 _AT_END = 0.02  # of a gap, within which a point is at its end
 _STARTS = 3  # from the sample for each point
@@ -105,7 +105,8 @@ def pareto_front(
         found_ends = [np.array(list(end.parameters.values())) for end in ends]
         trade = _trade(vehicle, criteria, method, limits, free, found_ends, int(seed))
         many = any(end.n_starts > default_starts(free) for end in ends)
-        trade = replace(trade, has_many_optima=many).from_strict_ends()
+        trade = replace(trade, has_many_optima=many)
+        trade = replace(trade, ends=tuple(trade.strict(trade.at(point)).point for point in trade.ends))
         return _front(trade, trade.front(int(points)), [end.status for end in ends], int(seed))
 
 
@@ -204,8 +205,7 @@ class _Trade:
         unit = sampler.random_base2(min(7 + count, 12) + (_DENSER if self.is_dense else 0))
         points = np.exp(np.log(self.lower) + unit * (np.log(self.upper) - np.log(self.lower)))
         table = (self.criteria(points) - self.scale[0]) / self.scale[1]
-        over = ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(points)
-        table += 10.0 * np.maximum(over, 0.0)[:, None]
+        table += 10.0 * np.maximum(self._limits.excess(points), 0.0)[:, None]
         near = np.asarray(scipy.spatial.KDTree(unit).query(unit, k=4 * count + 1)[1], dtype=np.int64)
         return points, table, near
 
@@ -222,10 +222,10 @@ class _Trade:
         """The problem with two independent samples, for searches among many local optima."""
         return [replace(self, seed=self.seed + i, is_dense=True, given_scale=self.scale) for i in (1, 2)]
 
-    def from_strict_ends(self) -> _Trade:
-        """The problem with single optima that are also non-dominated."""
-        strict = tuple(self.strict(self.at(point)).point for point in self.ends)
-        return replace(self, ends=strict)
+    @cached_property
+    def _limits(self) -> ConstrainedProblem:
+        """The constraints alone."""
+        return ConstrainedProblem(None, self.bounds, self.lower, self.upper)
 
     def problem(self, aim: Array, which: Sequence[int]) -> ConstrainedProblem:
         """Minimisation of the largest excess of the normalised criteria over their aims."""
@@ -255,10 +255,10 @@ class _Trade:
         lowest: list[float] = []  # of two searches that must agree, where there are many local optima
         if self._quick and (self.has_many_optima or has_many_optima(found, self._has_peaks)):
             for further in self._denser:
-                again = [one for one in searches(problem, further.starts(aim, which)) if one.excess <= 1e-6]
+                again = [one for one in searches(problem, further.starts(aim, which)) if one.excess <= _KEPT]
                 lowest.append(min((one.value for one in again), default=np.inf))
                 found += again
-        kept = [one for one in found if one.excess <= 1e-6 and np.isfinite(one.value)]
+        kept = [one for one in found if one.excess <= _KEPT and np.isfinite(one.value)]
         if not kept:
             return None
         nearest = min(kept, key=lambda one: one.value)
@@ -272,6 +272,8 @@ class _Trade:
 
     def strict(self, found: FrontPoint) -> FrontPoint:
         """A non-dominated design that is no worse in any criterion."""
+        if not self._quick:
+            return found
         ideal, size = self.scale
         parts = [
             ObjectivePart(one, None, 1.0 / s, -i / s + 1.0)
@@ -284,15 +286,11 @@ class _Trade:
         problem = ConstrainedProblem(
             combine_objectives(parts, worst=False), (*self.bounds, *no_worse), self.lower, self.upper
         )
-        if not self._quick:
-            return found
-        start = problem.at(found.point, 0)
-        better = replace(self.at(refine_minimax(problem, start).point), status=found.status)
+        end = refine_minimax(problem, problem.at(found.point, 0)).point
+        better = replace(self.at(end), status=found.status)
         gained = found.normal.sum() - better.normal.sum()
-        no_worse_now = np.all(better.normal <= found.normal + _SLACK) and np.all(
-            ConstrainedProblem(None, self.bounds, self.lower, self.upper).excess(better.point[None]) <= 1e-6
-        )
-        return better if gained > _SLACK and no_worse_now else found
+        is_kept = np.all(better.normal <= found.normal + _SLACK) and self._limits.excess(end[None])[0] <= _KEPT
+        return better if gained > _SLACK and is_kept else found
 
     def front(self, count: int, restarts: int = _RESTARTS) -> tuple[list[FrontPoint], set[tuple[bytes, bytes]]]:
         """Points of the front, and the pairs between which it is discontinuous."""
@@ -317,15 +315,13 @@ class _Trade:
             one = self.solve(aim, found, which)
             found += [] if one is None else [one]
         for aim in reversed(aims):  # repeated from the best of all points
-            problem, best = self.problem(aim, which), self.closest_to(aim, found, which)
-            again = refine_minimax(problem, problem.at(best.point, 0)) if self._quick else None
-            if again is not None and again.excess <= 1e-6:
-                found.append(replace(self.at(again.point), status=best.status))
+            if self._quick:
+                best = min(found, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
+                problem = self.problem(aim, which)
+                again = refine_minimax(problem, problem.at(best.point, 0))
+                if again.excess <= _KEPT:
+                    found.append(replace(self.at(again.point), status=best.status))
         return non_dominated(found, which)
-
-    def closest_to(self, aim: Array, found: Sequence[FrontPoint], which: Sequence[int]) -> FrontPoint:
-        """The point closest to an aim."""
-        return min(found, key=lambda one: float(np.max(one.normal[list(which)] - aim[list(which)])))
 
     def fill_gaps(
         self, found: list[FrontPoint], count: int, which: Sequence[int]
@@ -458,9 +454,8 @@ def _front(
     statuses = tuple(map(worst_of, of_points))
     bad, troubled = worst_of(statuses), sum(not one.ok for one in statuses)
     status = OK if bad.ok else Status(bad.kind, f"{troubled} of {len(statuses)} points, such as one with {bad.message}")
-    problem = ConstrainedProblem(None, trade.bounds, trade.lower, trade.upper)
     held = tuple(
-        constraint_results(problem, design, trade.method, one.point, known=False)
+        constraint_results(trade._limits, design, trade.method, one.point, known=False)
         for design, one in zip(designs, several, strict=True)
     )
     keys = [one.point.tobytes() for one in several]

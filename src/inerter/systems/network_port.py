@@ -27,15 +27,7 @@ from inerter.systems.polynomials import Polynomial, add, greatest_common_divisor
 class PortFunction:
     """One transfer function: P, Q, A and B with whole coefficients, from the constant upwards; empty if zero."""
 
-    poles: Polynomial
-    poles_rigid: Polynomial
-    zeros: Polynomial
-    zeros_rigid: Polynomial
-
-    @property
-    def polynomials(self) -> tuple[Polynomial, Polynomial, Polynomial, Polynomial]:
-        """P, Q, A, B."""
-        return self.poles, self.poles_rigid, self.zeros, self.zeros_rigid
+    polynomials: tuple[Polynomial, Polynomial, Polynomial, Polynomial]
 
     @cached_property
     def rounded_coefficients(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -70,4 +62,5 @@ def _split(one: Polynomial, two: Polynomial) -> tuple[Polynomial, Polynomial]:
 def _cancel_factors(*polynomials: Polynomial) -> PortFunction:
     """The polynomials without a factor that all have."""
     factor = greatest_common_divisor(*sorted((p for p in polynomials if p), key=len))
-    return PortFunction(*(quotient(p, factor) if p else [] for p in polynomials))
+    P, Q, A, B = (quotient(p, factor) if p else [] for p in polynomials)
+    return PortFunction((P, Q, A, B))

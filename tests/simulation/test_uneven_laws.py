@@ -336,7 +336,7 @@ def test_a_constant_force_moves_the_equilibrium_and_no_mean_square():
 def test_new_values_that_change_what_holds_are_refused():
     car = paper_quarter_car(Spring(5e4) | Damper(1500.0) | Reach(30.0, "u"))
     system = piecewise(car)
-    assert with_element_values(system, {"u": 20.0}).mechanics.limits.tolist() == [[-10.0, 20.0]]
+    assert with_element_values(system, {"u": 20.0}).limits.tolist() == [[-10.0, 20.0]]
     with pytest.raises(DesignError, match="'u' changes whether it holds against small forces"):
         with_element_values(system, {"u": 70.0})
 

@@ -18,7 +18,8 @@ def car(body=180.0, k=1e5, c=2e3, friction=10.0, gap=1e-3, b=None):
 
 
 def arrays(system):
-    yield from vars(system.mechanics).values()
+    known = system.kinematics
+    yield from (system.balance, known.moving, known.lengths, known.elements, system.limits)
     yield from (*system.motions, *system.rates, *system.elongations, system.kinetic, system.inertia, system.positions)
 
 

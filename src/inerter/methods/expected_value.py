@@ -231,7 +231,7 @@ def _expected_peaks(vehicle: Vehicle, index: Index) -> Array | None:
 
 def is_nonlinear(system: PiecewiseSystem) -> bool:
     """Whether an element switches; one that exerts a constant force moves the static equilibrium alone."""
-    lower, upper = system.mechanics.limits.T
+    lower, upper = system.limits.T
     return bool(np.any(lower < upper))
 
 

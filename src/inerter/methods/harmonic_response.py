@@ -58,7 +58,7 @@ class ForcedResponse:
         signals = [signal if name == path.input else None for name in names]
         table = tabulate(signals, [0.0] * len(signals), period, step)
         state = initial_state(self.system, table.value[0], "rest") if start is None else start
-        lower, upper = self.system.mechanics.limits.T
+        lower, upper = self.system.limits.T
         uneven = bool(np.any(lower != -upper))
         found = steady_squares(
             self.system, table, [self.output], [self.filter], state, _MOST_PERIODS, about_mean=uneven, repeats=_REPEATS

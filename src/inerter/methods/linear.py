@@ -23,7 +23,7 @@ from inerter.norms.hinf import GainPeak, hinf_norm
 from inerter.signals.coherence import Excess
 from inerter.systems.descriptor import Descriptor, close, describe, describe_design
 from inerter.systems.filters import Filter, high_pass
-from inerter.systems.input_paths import Column, InputPath, apply_excitation, columns_of, excesses_of, inputs_of
+from inerter.systems.input_paths import Column, InputPath, apply_excitation, columns_of, inputs_of
 from inerter.systems.linear import LinearSystem
 from inerter.systems.output_filters import with_output_filters
 from inerter.vehicle.mechanism import Mechanism
@@ -263,8 +263,8 @@ def linear_problem_of_design(
     outputs = [output.output for output in asked.outputs]
     descriptor, values = describe_mechanism(index.excited, inputs_of(paths), outputs)
     columns, driven = tuple(columns_of(paths)), apply_excitation(descriptor, paths)
-    problem = LinearProblem(asked, driven, columns, conventions.pade_order, paths, index.excited, excesses_of(paths))
-    return problem, values
+    excesses = {path.source: path.excess for path in paths if path.excess is not None}
+    return LinearProblem(asked, driven, columns, conventions.pade_order, paths, index.excited, excesses), values
 
 
 def check_peak_gain(definition: IndexDefinition) -> None:

@@ -87,7 +87,7 @@ def first_order(
     None if a gap is there, if a part is loose without friction, if what moves is not one road alone, or if a friction
     differs by its direction.
     """
-    kinds, (lower, upper) = system.mechanics.elements[:, KIND], system.mechanics.limits.T
+    kinds, (lower, upper) = system.kinematics.elements[:, KIND], system.limits.T
     if excitation.delays is None or not np.any(lower < upper) or np.any(lower != -upper):
         return None
     if np.any(upper[kinds != FRICTION] > 0.0):

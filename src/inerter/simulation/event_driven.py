@@ -365,17 +365,17 @@ def _mechanics(system: PiecewiseSystem, rows: list[tuple[Matrix, Matrix, Matrix]
     n, k = system.order, len(system.nonlinear)
     na, nw = (motion.shape[1] for motion in system.motions[:2])
     dampers = sum(b.element.linear is LinearRole.DAMPING for b in system.graph.branches)
-    constants, width, eta = system.mechanics, n + system.inputs + na + nw + k, n + k
+    known, width, eta = system.kinematics, n + system.inputs + na + nw + k, n + k
     entry, output = eta + na + nw + k, eta + na + nw + k + nw + k
     return Mechanics(
         sizes=Sizes(na, nw, len(system.mechanism.roads), n, system.inputs, k, dampers, squares),
         rows=MapRows(n, eta, entry, output, output + len(rows)),
-        balance=constants.balance,
-        rates=constants.rates,
-        lengths=constants.lengths,
-        kind=np.ascontiguousarray(constants.elements[:, KIND]),
-        own_position=np.ascontiguousarray(constants.elements[:, OWN_POSITION]),
-        limits=constants.limits,
+        balance=system.balance,
+        rates=known.moving,
+        lengths=known.lengths,
+        kind=np.ascontiguousarray(known.elements[:, KIND]),
+        own_position=np.ascontiguousarray(known.elements[:, OWN_POSITION]),
+        limits=system.limits,
         over=np.array([np.concatenate(row) for row in rows]) if rows else np.zeros((0, width)),
     )
 
@@ -464,11 +464,10 @@ def _used_knot_numbers(
     """Numbers of the knot values in use: none of an input at rest, and heights of a road only where needed."""
     n, roads = system.order, len(system.mechanism.roads)
     na, nw = (motion.shape[1] for motion in system.motions[:2])
-    mechanics = system.mechanics
     heights = (
         any(np.count_nonzero(on_u[:roads]) for _, on_u, _ in rows)
-        or np.count_nonzero(mechanics.balance[:, na + nw + n : na + nw + n + roads])
-        or np.count_nonzero(mechanics.lengths[:, n - na :])
+        or np.count_nonzero(system.balance[:, na + nw + n : na + nw + n + roads])
+        or np.count_nonzero(system.kinematics.lengths[:, n - na :])
     )
     numbers = range(4 * len(moving))
     used = [i for i in numbers if moving[i // 4] and (i % 4 or i >= 4 * roads or heights)]

@@ -67,7 +67,7 @@ def _starting_velocities(system: PiecewiseSystem, rates: Matrix) -> Matrix:
 
 def may_lie_unstrained(system: PiecewiseSystem) -> bool:
     """Whether nothing that switches has a force, or an elongation, at any rest."""
-    return all(lower <= 0.0 <= upper for lower, upper in system.mechanics.limits.tolist())
+    return all(lower <= 0.0 <= upper for lower, upper in system.limits.tolist())
 
 
 def _positions(system: PiecewiseSystem, road: Matrix, force: Matrix) -> Matrix:

@@ -44,7 +44,8 @@ class Slots:
     g: slice
 
     @staticmethod
-    def of(split: Coordinates, settling: bool) -> Slots:
+    def of(split: Coordinates, *, settling: bool) -> Slots:
+        """The slots, with velocities of Z where an output asks for one (`settling`)."""
         a, u, y, z = (columns.shape[1] for columns in (split.R, split.U, split.Y, split.Z))
         edges = np.cumsum([0, a, u, y, z, u, z * settling])
         a1, u1, y1, z0, u0, z1 = (slice(int(i), int(j)) for i, j in pairwise(edges))
@@ -208,7 +209,8 @@ def split(mechanism: Mechanism, graph: Graph, inputs: Sequence[str], wanted: Seq
     )
     known = outputs(mechanism, graph)
     asked = [known[name] for name in wanted if name in known]
-    slots = Slots.of(found, _settling(found, [row for one in asked for row in (one.velocity, one.displacement)]))
+    moved = [row for one in asked for row in (one.velocity, one.displacement) if row.size]
+    slots = Slots.of(found, settling=any(np.any(found.rate(row)[3]) for row in moved))
     return Frame(
         mechanism, graph, tuple(inputs), found, slots, known, tuple(springs), spring_rows, spring_roads, columns, forces
     )
@@ -220,8 +222,3 @@ def _forces(mechanism: Mechanism, graph: Graph, names: Sequence[str]) -> Matrix:
     given = {force.name: row for force, row in zip(mechanism.forces, ports(mechanism, graph), strict=True)}
     rows = beside | given
     return np.array([rows[name] for name in names]).reshape(len(names), len(graph.nodes))
-
-
-def _settling(found: Coordinates, asked: Sequence[Matrix]) -> bool:
-    """Whether one of these motions is of something that only springs hold."""
-    return any(np.any(found.rate(row)[3]) for row in asked if row.size)

@@ -71,11 +71,6 @@ def inputs_of(paths: Sequence[InputPath]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(path.input for path in paths))
 
 
-def excesses_of(paths: Sequence[InputPath]) -> dict[str, Excess]:
-    """Relative excess of the true density over that of the filter, by source; only where the filter is approximate."""
-    return {path.source: path.excess for path in paths if path.excess is not None}
-
-
 def columns_of(paths: Sequence[InputPath]) -> list[Column]:
     """Sources at times of arrival, those of one source in the order of time; one for each input if all are plain."""
     if _plain(paths):

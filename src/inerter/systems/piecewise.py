@@ -35,17 +35,6 @@ _LOST = 1e14  # ratio of inertias at which the smaller one is rounding of the la
 
 
 @dataclass(frozen=True, eq=False)
-class ConstantMatrices:
-    """The constant matrices that `kernels.arrays.Mechanics` describes."""
-
-    balance: Matrix
-    rates: Matrix
-    lengths: Matrix
-    elements: NDArray[np.int64]
-    limits: Matrix
-
-
-@dataclass(frozen=True, eq=False)
 class PiecewiseSystem:
     """A mechanism in the coordinates of `systems.kinematics`.
 
@@ -56,7 +45,8 @@ class PiecewiseSystem:
     mechanism: Mechanism
     kinematics: Kinematics
     graph: Graph
-    mechanics: ConstantMatrices
+    balance: Matrix  # and limits, see `kernels.arrays.Mechanics`
+    limits: Matrix
     nonlinear: tuple[dict[int, float], ...]  # branches of friction or gaps that act as one; shares of its force
     outputs: dict[str, Output]
     rates: tuple[Matrix, Matrix, Matrix]  # of all branches, over a, w, z'
@@ -91,8 +81,8 @@ class PiecewiseSystem:
     @cached_property
     def needs_velocity(self) -> tuple[bool, ...]:
         """Of each road, whether its velocity reaches an inertia at once."""
-        na, nv, speed = self.motions[0].shape[1], self.mechanics.balance.shape[0], self.positions.shape[0]
-        on_w, sides = np.split(self.mechanics.balance, [nv], axis=1)
+        na, nv, speed = self.motions[0].shape[1], self.balance.shape[0], self.positions.shape[0]
+        on_w, sides = np.split(self.balance, [nv], axis=1)
         first = na + speed + len(self.mechanism.roads)
         damping = np.hstack([-sides[:, :na], on_w[:, na:], -sides[:, first : first + len(self.mechanism.roads)]])
         return tuple(np.any(np.abs(_condensed_damping(damping, na)) > 1e-9, axis=0))
@@ -192,13 +182,8 @@ def _system(mechanism: Mechanism, known: Kinematics, elements: Sequence[Element]
         mechanism=mechanism,
         kinematics=known,
         graph=graph,
-        mechanics=ConstantMatrices(
-            balance=values.dot(terms).reshape(without.shape) + without,
-            rates=known.moving,
-            lengths=known.lengths,
-            elements=known.elements,
-            limits=np.array([_limits(graph, group) for group in known.nonlinear]).reshape(-1, 2),
-        ),
+        balance=values.dot(terms).reshape(without.shape) + without,
+        limits=np.array([_limits(graph, group) for group in known.nonlinear]).reshape(-1, 2),
         nonlinear=tuple(_shares(graph, group) for group in known.nonlinear),
         outputs=known.outputs,
         rates=known.rates,

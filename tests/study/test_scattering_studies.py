@@ -202,3 +202,18 @@ def test_a_check_warns_of_tolerances_that_are_simulated(tmp_path: Path, evaluate
     if is_told:
         assert told[0].startswith("Warning: the tolerances of S2 are found by expected-value")
         assert "more than 16384 designs for each index" in told[0]
+
+
+@pytest.mark.parametrize(("optimise", "is_told"), [("expected-value", True), ("statistical-linearisation", False)])
+def test_a_check_warns_of_searches_that_simulate(tmp_path: Path, optimise: str, is_told: bool) -> None:
+    """Of the layout with friction; a search simulates no more designs than it is said to."""
+    parts = 'k = "20 kN/m"\nc = { from = "100 N s/m", to = "10 kN s/m" }\nf = "20 N"'
+    settings = f'indices = ["J1"]\noptimise = "{optimise}"'
+    study = load_text(tmp_path, study_text(settings, elements=parts, layouts='S1 = "k | c"\nS2 = "k | (c | f)"'))
+    lines = list(check_lines(read_tables(study.path, "a study"), study.path))
+    told = [line for line in lines if "to optimise" in line]
+    assert bool(told) is is_told, lines
+    if is_told:
+        most = int(told[0].removeprefix(f"Warning: to optimise S2, {optimise} simulates up to ").split()[0])
+        found = it.optimise(study.design("S2"), study.index("J1"), study.method(optimise))
+        assert most / 10 < found.evaluations <= most

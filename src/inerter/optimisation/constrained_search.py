@@ -161,14 +161,19 @@ def _is_converged(problem: ConstrainedProblem, point: Array, known: Known, found
     return bool(np.log(found.value) <= level + _STANDS_OUT and missed <= _STANDS_OUT)
 
 
+def most_evaluations(free: int, limited: bool) -> int:
+    """Largest number of designs that `trust_region` evaluates for this many free values."""
+    return (80 if limited else 60) * free
+
+
 def trust_region(problem: ConstrainedProblem, start: Array) -> LocalOptimum:
     """The local optimum of a costly index near `start`, by a trust-region search without derivatives (COBYQA)."""
     assert problem.objective is not None
     objective, best = problem.objective, [LocalOptimum(start, np.inf, 0, np.inf)]
     memory: dict[bytes, tuple[float, Array]] = {}
     origin = np.log(start)
-    each, radius = (80, 1e-4) if problem.bounds else (60, 1e-3)
-    most = each * start.size
+    radius = 1e-4 if problem.bounds else 1e-3
+    most = most_evaluations(start.size, bool(problem.bounds))
 
     def at(x: Array) -> tuple[float, Array]:
         if x.tobytes() not in memory:

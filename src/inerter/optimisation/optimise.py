@@ -29,7 +29,14 @@ from inerter.networks.elements import Free
 from inerter.networks.free_network import check_chosen
 from inerter.notebook import shown_by
 from inerter.optimisation.active_constraints import ConstraintResult, constraint_results, infeasible, with_limits
-from inerter.optimisation.constrained_search import KEPT, KEPT_COSTLY, ConstrainedProblem, searches, trust_region
+from inerter.optimisation.constrained_search import (
+    KEPT,
+    KEPT_COSTLY,
+    ConstrainedProblem,
+    most_evaluations,
+    searches,
+    trust_region,
+)
 from inerter.optimisation.limits import Limit, bounds_of, check_limits, is_smooth
 from inerter.optimisation.local import LocalOptimum, descend
 from inerter.optimisation.starts import resumable_search, searches_from
@@ -428,6 +435,15 @@ def _distinct_points(points: list[Array]) -> list[Array]:
         if all(np.abs(np.log(point / other)).max() > _APART for other in chosen):
             chosen.append(point)
     return chosen[:_MOST_TRIED]
+
+
+def most_simulated(free: int, limited: bool) -> int:
+    """Largest number of designs that a search of this many free values by simulation evaluates; 0 without free values.
+
+    >>> most_simulated(2, limited=False)
+    246
+    """
+    return _MOST_TRIED + _MOST_SEARCHES * most_evaluations(free, limited) if free else 0
 
 
 def _costly_searches(problem: ConstrainedProblem, tried: list[Array]) -> tuple[list[LocalOptimum], int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from itertools import product
@@ -22,15 +23,16 @@ from inerter.files.study.notes import road_notes
 from inerter.files.study.plausibility import input_warnings, roads_sentences
 from inerter.files.study.study import Study, elements_used, searched_layouts
 from inerter.files.study.tasks import tasks
-from inerter.formatting import format_count
+from inerter.formatting import format_count, format_list, format_number
 from inerter.methods.composite_index import objective_of, without_tied_values
 from inerter.methods.linear import CONVENTIONS, linear_problem
-from inerter.methods.method import MethodWithChecks, MethodWithKernels, constituents_of
+from inerter.methods.method import AveragingMethod, MethodWithChecks, MethodWithKernels, constituents_of
 from inerter.methods.registry import is_blind
 from inerter.network_search.plan import SearchPlan, plan_search
 from inerter.networks.elements import middle
 from inerter.optimisation.limits import bounds_of
-from inerter.optimisation.optimise import check_free
+from inerter.optimisation.optimise import check_free, most_simulated
+from inerter.systems.descriptor import linear_notes
 from inerter.systems.piecewise import piecewise
 from inerter.uncertainty.distributions import DISTRIBUTIONS, nominal, scatter_of
 from inerter.vehicle.vehicle import Vehicle
@@ -56,9 +58,26 @@ def check_lines(tables: Mapping[str, Any], path: Path) -> Iterator[str]:
     yield f"{path}: ok. {study.model}; layouts {some(study.layouts)}; indices {', '.join(study.indices)}{size}."
     yield from roads_sentences(study)
     yield from input_warnings(study)
+    yield from () if searched_layouts(study) else _search_warning(study)
     for task in () if searched_layouts(study) else tasks():
         yield from task.warnings(study)
     yield from (f"Note: {note}." for note in notes)
+
+
+def _search_warning(study: Study) -> Iterator[str]:
+    """Warning on a search that simulates every design that it tries, as one with friction or gaps."""
+    if study.optimise is None or not isinstance(study.method(study.optimise), AveragingMethod):
+        return
+    designs = {name: study.design(name) for name in study.layouts}
+    simulated = {name: design for name, design in designs.items() if linear_notes(design.mechanism())}
+    each = [most_simulated(len(design.free_values()), bool(study.limits)) for design in simulated.values()]
+    if any(each):
+        several = math.prod(len(sweep.values) for sweep in study.sweeps) * max(len(study.conditions), 1)
+        yield (
+            f"Warning: to optimise {format_list(list(simulated))}, {study.optimise} simulates up to "
+            f"{format_number(sum(each) * len(study.indices) * several)} designs, each on all of its roads. One takes "
+            f"some 50 ms for a quarter car with friction, and up to seconds for several axles with gaps."
+        )
 
 
 def _study_size(study: Study) -> str:

@@ -128,7 +128,7 @@ def broken(held: Sequence[ConstraintResult]) -> Status:
     if not any(one.excess > KEPT_COSTLY for one in held):
         return OK
     limits, nearest = _constraint_words(held)
-    return Status(StatusKind.INFEASIBLE, f"no feasible design for {limits}, as all values are fixed: {nearest}")
+    return Status(StatusKind.INFEASIBLE, f"no feasible design for {limits}: no design variable can change {nearest}")
 
 
 def _constraint_words(held: Sequence[ConstraintResult]) -> tuple[str, str]:

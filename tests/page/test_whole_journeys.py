@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -226,6 +227,7 @@ def test_a_search_is_stopped_and_resumed(
     page.wait_for_selector(".job[data-state=running] [data-network]", timeout=120_000)
     person.press(job.get_by_role("button", name="Stop"))
     page.wait_for_selector(".job[data-state=stopped] [data-network]")
+    assert re.fullmatch(r"stopped at \d+ %", page.inner_text(".job .state"))
     assert "so far" in job.inner_text()
     person.press(job.get_by_role("button", name="Resume"))
     page.wait_for_selector(".job[data-state=done] [data-network]", timeout=240_000)

@@ -123,11 +123,10 @@ const unchosenLayouts = (state) => allDesigns(state.history.present).filter(({ l
 /** That layouts are compared at values that nobody has chosen, or that are optimal for another problem, and the button
  * that optimises all of them. @param {{state: State}} props */
 function ToOptimise({ state }) {
-  const [stale, unchosen] = [staleLayouts(state), unchosenLayouts(state)];
-  if (stale.length + unchosen.length === 0 || isBeingChosen(state)) return null;
-  const title = stale.length > 0 ? `Values of ${stale.join(", ")} were optimised before the study or its goal changed.`
-    : `Nobody has chosen values of ${unchosen.join(", ")}.`;
-  return html`<button type="button" class="stale" title=${title} onClick=${() =>
+  const stale = staleLayouts(state);
+  if (stale.length + unchosenLayouts(state).length === 0 || isBeingChosen(state)) return null;
+  const title = stale.length > 0 && `Values of ${stale.join(", ")} were optimised before the study or goal changed.`;
+  return html`<button type="button" class="stale" title=${title || undefined} onClick=${() =>
     /** @type {HTMLElement | null} */ (document.querySelector("#find-best"))?.click()}>
     <u>Optimise all layouts</u></button>`;
 }

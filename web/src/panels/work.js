@@ -91,7 +91,7 @@ export function JobHead({ store, api, job: { id, title, study, kind, state, shar
   const running = RUNNING.includes(state);
   const isOther = study && study !== store.get().history.present.study.title;
   return html`<div class="row"><b>${title}</b>${isOther && html` <span class="quiet">of ${study}</span>`}
-      <span class="state">${state}</span>
+      <span class="state">${state}${resumes && share ? ` at ${Math.floor(100 * share)} %` : ""}</span>
       ${resumes && html`<button type="button" onClick=${() => resume(store, api, id)}>Resume</button>`}
       <button type="button" onClick=${() => stop(store, api, id)}>${running ? "Stop" : "Forget"}</button></div>
     ${running && html`<p class="row progress">

@@ -142,6 +142,20 @@ def test_where_modes_cannot_serve_covariances_do():
     assert even._compiled_norms(points) == pytest.approx(refused._compiled_norms(points), rel=1e-9)
 
 
+def test_no_gradient_is_computed_without_rounding_on_a_resonance_that_a_search_steps_over(monkeypatch):
+    body, wheel, tyre, k, k1 = 250.0, 35.0, 150e3, 20e3, 1e4
+    fastest = np.linalg.eigvals([[k / body, -k / body], [-k / wheel, (k + tyre) / wheel]]).max()
+    series = Damper(free(100.0, 1e5, "c")) - (Inerter(free(0.1, 1e3, "b")) | Spring(k1))  # no damping at its notch
+    objective = it.Norm().objective(it.QuarterCar(body, wheel, tyre, Spring(k) | series), it.RideComfort(ROAD))
+    point = np.array([2000.0, k1 / fastest * (1.0 + 1e-7)])
+    expected, asked, without_rounding = objective._exact_index(point), [], CompiledNorm._exact_norms
+    monkeypatch.setattr(CompiledNorm, "_exact_norms", lambda one, at: asked.append(at) or without_rounding(one, at))
+    value, gradient = objective.value_and_gradient(point)
+    assert value == expected > 1e3 * objective.values(point[None] * [1.0, 1.006])[0]
+    assert np.isnan(gradient).all()
+    assert len(asked) == 1
+
+
 def test_a_gradient_is_right_at_a_resonance_that_is_sharper_than_the_steps_of_differences():
     def end(name, *bounds):
         k, c, b, k1 = (free(0.5 * v, 2.0 * v, f"{letter}{name}") for letter, v in zip("kcbl", bounds, strict=True))

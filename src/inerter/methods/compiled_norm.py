@@ -41,6 +41,7 @@ _ASTRIDE, _SAME = (1e-4, 1e-5), 1e-7  # relative distances at which a gradient i
 _USABLE = 1e-5  # the same where the norms are not sure: differences without rounding take a search too long
 _NEAR = ((1e-5, 5e4),)  # relative steps and weights of differences of values without rounding
 _FAR = ((3e-3, 2.0 / 9e-3), (6e-3, -1.0 / 36e-3))  # of fourth order: compiled values may be off by 1e-9
+_CREST = 0.5  # share of a value to which it falls within these steps where no search ends
 _MOVED, _STEADY = (1e-13, -2e-13), 1e-10  # relative steps of some roundings, and what norms may change by them
 _UNCERTAIN = 1e-10  # error estimate from which on the error bound of a norm behind a filter may be exceeded
 _MANY_STATES = 9  # with those of filters, from which on modes are faster than covariances, and come first
@@ -356,10 +357,11 @@ class CompiledNorm:
         """An index of r.m.s. values and its gradient.
 
         The adjoint's where modes know the norms or a difference confirms it, else differences: of compiled values where
-        these are sure, else of values without rounding.
+        these are sure, else of values without rounding. It is nan where these would be differences across the resonance
+        of a motion that is hardly damped, which a search only steps over.
         """
         if not self.supported_outputs.all():
-            return self._exact_index(point), _slopes(self._exact_index, point, _NEAR)
+            return self._exact_index(point), _slopes(self._exact_indices, point, _NEAR)[0]
         norms, gradient, errors, is_modal = self._with_slopes(point)
         found = value = float(self._combine(norms)[0])
         allowed = _SAME
@@ -368,8 +370,11 @@ class CompiledNorm:
         agrees = abs(found - value) <= _SAME * value
         if agrees and (is_modal[0] or self._gradient_agrees(point, gradient, allowed * value)):
             return value, gradient
-        slopes = _slopes(lambda place: float(self._combine(self._compiled_norms(place[None]))[0]), point, _FAR)
-        return value, slopes if np.all(np.isfinite(slopes)) else _slopes(self._exact_index, point, _NEAR)
+        slopes, around = _slopes(self._compiled_values, point, _FAR)
+        if not np.all(np.isfinite(slopes)):
+            is_crest = np.any(around < _CREST * value)
+            slopes = np.full(point.size, np.nan) if is_crest else _slopes(self._exact_indices, point, _NEAR)[0]
+        return value, slopes
 
     def _combine(self, norms: Array) -> Array:
         return self.problem.definition.combine(norms, self.problem.weights)
@@ -394,6 +399,9 @@ class CompiledNorm:
 
     def _exact_index(self, point: Array) -> float:
         return float(self._combine(self._exact_norms(point)))
+
+    def _exact_indices(self, points: Array) -> Array:
+        return np.array([self._exact_index(point) for point in points])
 
     def _gradient_agrees(self, point: Array, gradient: Array, allowed: float) -> bool:
         """Whether the gradient agrees with a central difference in one direction, but for what is allowed.
@@ -443,19 +451,15 @@ def kernels_of(definition: IndexDefinition, by_modes: bool = False) -> tuple[Any
     return tuple(found)
 
 
-def _slopes(value: Callable[[Array], float], point: Array, stencil: Sequence[tuple[float, float]]) -> Array:
-    """Central differences of the value by relative steps, those of the stencil with their weights."""
-
-    def shifted_value(i: int, step: float) -> float:
-        return value(point * (1.0 + step * (np.arange(point.size) == i)))
-
+def _slopes(
+    values: Callable[[Array], Array], point: Array, stencil: Sequence[tuple[float, float]]
+) -> tuple[Array, Array]:
+    """Central differences by relative steps, those of the stencil with their weights, and the values that they take."""
+    steps, weights = np.array(stencil).T
+    shifts = np.multiply.outer(np.concatenate([steps, -steps]), np.eye(point.size))
+    around = values(point * (1.0 + shifts.reshape(-1, point.size))).reshape(2, steps.size, point.size)
     with np.errstate(invalid="ignore"):  # infinite on both sides: no gradient
-        return np.array(
-            [
-                sum(w * (shifted_value(i, h) - shifted_value(i, -h)) for h, w in stencil) / point[i]
-                for i in range(point.size)
-            ]
-        )
+        return weights @ (around[0] - around[1]) / point, around
 
 
 def evaluate_problems(

@@ -316,7 +316,7 @@ class Mechanism:
         """Values that are no numbers: those of networks in order of appearance, then masses."""
         values = [element.value for mount in self.mounts() for element in mount.network.elements()]
         values += [coordinate.inertia for coordinate in self.coordinates]
-        return [value for value in values if type(value) is not float and isinstance(value, Free | Tied)]
+        return [value for value in values if isinstance(value, (Free, Tied))]
 
     def free_values(self) -> dict[str, Free]:
         """Free values by name: those of networks in order of appearance, then masses."""
@@ -424,14 +424,15 @@ def _check_names(mechanism: Mechanism) -> None:
         *mechanism.points,
     )
     for part in parts:
-        kind = type(part).__name__
-        if not isinstance(part.name, str) or not _is_name(part.name):
+        name = part.name
+        if not isinstance(name, str) or not _is_name(name):
             raise MechanismError(
-                f"The name of a {kind} must be a letter followed by letters, digits and underscores, got {part.name!r}."
+                f"The name of a {type(part).__name__} must be a letter followed by letters, digits and underscores, "
+                f"got {name!r}."
             )
-        if part.name in seen:
-            raise MechanismError(f"Duplicate name {part.name!r} in the mechanism. Give each part a unique name.")
-        seen.add(part.name)
+        if name in seen:
+            raise MechanismError(f"Duplicate name {name!r} in the mechanism. Give each part a unique name.")
+        seen.add(name)
     for mount in mechanism.mounts():
         check_network(mount.network)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -54,7 +54,7 @@ class ConstrainedProblem:
         found = [np.full(points.shape[0], -np.inf), *(bound.excess(points) for bound in self.bounds)]
         return np.asarray(np.max(found, axis=0))
 
-    @property
+    @cached_property
     def functions(self) -> tuple[Any, ...]:
         """The index, if there is one, and the constrained quantities."""
         own = () if self.objective is None else (self.objective,)
@@ -68,6 +68,9 @@ class ConstrainedProblem:
         """Logarithms at a point and their slopes; constraints relative to their limits, not positive if satisfied."""
         which = (None,) * len(self.functions) if known is None else known
         found = [_log_rows(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
+        if not self.bounds:
+            ((logs, slopes),) = found
+            return LogRows(logs, slopes, np.ones(logs.size), np.zeros(0), np.zeros((0, point.size)))
         own = [] if self.objective is None else [found.pop(0)]
         logs, slopes, under = [a for a, _ in own], [b for _, b in own], [np.ones(a.size) for a, _ in own]
         equal, equal_slopes = [np.zeros(0)], [np.zeros((0, point.size))]
@@ -103,14 +106,15 @@ def _log_rows(function: Differentiable, point: Array, which: Any, following: boo
         values, gradients = np.array([value]), gradient[None]
     else:
         values, gradients = function.components(point, peaks[:_PEAKS] if following else peaks)
-    good = np.isfinite(values) & (values > 0.0) & np.all(np.isfinite(gradients), axis=1)
-    low = np.isfinite(values) & (values <= 0.0)  # far below the level, as a condition that is never the worst may be
-    logs, slopes = np.where(low, _HIDDEN, -_HIDDEN), np.zeros((values.size, point.size))
-    logs[good], slopes[good] = np.log(values[good]), gradients[good] * point / values[good, None]
-    if peaks is None or not following:
-        return logs, slopes
-    spare = _PEAKS - values.size
-    return np.append(logs, np.full(spare, _HIDDEN)), np.vstack([slopes, np.zeros((spare, point.size))])
+    count = _PEAKS if peaks is not None and following else values.size
+    logs, slopes = np.full(count, _HIDDEN), np.zeros((count, point.size))
+    good = np.isfinite(values) & (values > 0.0) & np.isfinite(gradients).all(axis=1)
+    if not good.all():
+        low = np.isfinite(values) & (values <= 0.0)  # a condition that is never the worst is far below the level
+        logs[: values.size] = np.where(low, _HIDDEN, -_HIDDEN)
+    found = np.flatnonzero(good)
+    logs[found], slopes[found] = np.log(values[found]), gradients[found] * point / values[found, None]
+    return logs, slopes
 
 
 def searches(problem: ConstrainedProblem, first: Sequence[Array]) -> list[LocalOptimum]:

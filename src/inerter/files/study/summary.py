@@ -88,7 +88,7 @@ def design_rows(data: xr.Dataset, study: Study) -> Iterator[tuple[Case, str, dic
 
 
 def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
-    more, parts = _more(study), _on_parts(data)
+    more, parts, numbers = _more(study), _on_parts(data), numbers_in(data)
     parameters = data.parameter.values.tolist()
     units = units_by_name(data, "index")
     for case, method, row in design_rows(data, study):
@@ -105,7 +105,7 @@ def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
             *row["other_value"],
             *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
             *(row["limit.part"][i] for i in parts),
-            *(content for name in numbers_in(data) for content in number_entry(name, row).values()),
+            *(content for name in numbers for content in number_entry(name, row).values()),
             *(
                 row[f"{IN_CONDITIONS}{name}"][i]
                 for i in range(len(study.conditions))

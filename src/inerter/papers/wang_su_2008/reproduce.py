@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -108,7 +108,9 @@ def reproduce(
         figure11 = _figure11(studies)
         if figure11 is not None and "linear" in wanted:
             tasks += [PaperItem("between", name) for name in between.names(figure11)]
-        tasks += [_curve(name, studies) for name in dict.fromkeys(n for figure in drawn for n in curves.names(figure))]
+        if drawn:
+            names = dict.fromkeys(name for figure in drawn for name in curves.names(figure))
+            tasks += _curve_points(names, studies["figure11"].data["parameter_value"])
         found = _put_together(
             tuple(part for part in PARTS if part in wanted), studies, _run(tasks, results, pool, progress)
         )
@@ -177,12 +179,17 @@ def _figure11(studies: dict[str, StudyResult]) -> xr.Dataset | None:
     return studies["figure11"].data.sel({"method": "norm"}) if "figure11" in studies else None
 
 
-def _curve(name: str, studies: dict[str, StudyResult]) -> PaperItem:
-    """A point of Figure 13 or 14 with the parameters of its linear optimum, which Figure 11 has found."""
-    layout, index, point = name.split()
-    best = studies["figure11"].data.sel({"layout": curves.linear_twin(layout), "index": index}).isel(k=int(point))
-    values = zip(best.parameter.values.tolist(), best.parameter_value.values.tolist(), strict=True)
-    return PaperItem("curves", name, tuple((p, value) for p, value in values if value == value))
+def _curve_points(names: Iterable[str], best: xr.DataArray) -> list[PaperItem]:
+    """Points of Figures 13 and 14 with the parameters of their linear optima, which Figure 11 has found."""
+    layouts, indices, parameters = (best[dimension].values.tolist() for dimension in ("layout", "index", "parameter"))
+    optima = best.transpose("layout", "index", "k", "parameter").values
+    points = []
+    for name in names:
+        layout, index, point = name.split()
+        found = optima[layouts.index(curves.linear_twin(layout)), indices.index(index), int(point)].tolist()
+        given = tuple((p, value) for p, value in zip(parameters, found, strict=True) if value == value)
+        points.append(PaperItem("curves", name, given))
+    return points
 
 
 def _run(tasks: list[PaperItem], results: Results, pool: Pool, progress: Progress) -> dict[tuple[str, str], Numbers]:

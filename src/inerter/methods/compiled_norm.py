@@ -272,7 +272,7 @@ class CompiledNorm:
 
         The slower way takes the designs of which the other is not sure. The last tells which are by modes.
         """
-        many = len(self.problem.descriptor.states) >= _MANY_STATES
+        many = _has_many_states(self.problem)
         ways = (self._by_modes, self._by_covariances) if many else (self._by_covariances, self._by_modes)
         norms, gradients, errors = ways[0](points, weights)
         missing = np.isinf(errors)
@@ -449,6 +449,18 @@ def kernels_of(definition: IndexDefinition, by_modes: bool = False) -> tuple[Any
     if by_modes or coherence is not None or any(one is not None for one in definition.filters):
         found.append(modal_kernels.norms_by_modes)
     return tuple(found)
+
+
+def first_kernel(problem: LinearProblem) -> Any:
+    """The compiled code that values designs, where it is sure of them."""
+    if problem.definition.is_peak:
+        return gain_kernels.peaks_of
+    return modal_kernels.norms_by_modes if _has_many_states(problem) else h2_kernels.norms
+
+
+def _has_many_states(problem: LinearProblem) -> bool:
+    """Whether norms by modes come first."""
+    return len(problem.descriptor.states) >= _MANY_STATES
 
 
 def _slopes(

@@ -314,6 +314,11 @@ def index_over_strut(vehicle: Vehicle, index: Index) -> IndexOverNetwork | None:
     None where there is no such strut, and where compiled code cannot give the index.
     """
     mechanism = vehicle.mechanism()
+    return definition_over_strut(mechanism, index.definition(mechanism))
+
+
+def definition_over_strut(mechanism: Mechanism, definition: IndexDefinition) -> IndexOverNetwork | None:
+    """`index_over_strut` from the definition of the index."""
     if not has_one_free_strut(mechanism):
         return None
     (mount,) = _free_struts(mechanism)
@@ -322,7 +327,7 @@ def index_over_strut(vehicle: Vehicle, index: Index) -> IndexOverNetwork | None:
         return None
     probe = replace(mount, network=Damper(free(1.0, 2.0, PLACE), PLACE))
     probed = replace(mechanism, struts=tuple(probe if strut is mount else strut for strut in mechanism.struts))
-    structure, definition = structure_of(probed), index.definition(mechanism)
+    structure = structure_of(probed)
     try:
         if structure is None or not isinstance(definition, Hashable):
             found = network_index(probed, definition, PLACE)

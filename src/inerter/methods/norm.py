@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from inerter.errors import DesignError
 from inerter.indices.definition import ExcitedIndex, Index, IndexDefinition
-from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, kernels_of
+from inerter.methods.compiled_norm import CompiledNorm, evaluate_problems, first_kernel, kernels_of
 from inerter.methods.linear import CONVENTIONS, PROMISE, check_conventions, linear_problem, linear_problem_of_design
 from inerter.methods.method import Estimate, FormerMethodNames, NonlinearitySupport
-from inerter.methods.network_norm import has_one_free_strut, network_kernel, norms_over_strut
+from inerter.methods.network_norm import definition_over_strut, network_kernel, norms_over_strut
 from inerter.methods.objective import Differentiable, count_of, rows_of
 from inerter.vehicle.vehicle import Vehicle
 
@@ -108,9 +108,13 @@ class Norm(FormerMethodNames):
         """The compiled code that a search calls; one design is valued without."""
         if search is None:
             return ()
-        if is_exact_norm(self) and has_one_free_strut(search.mechanism()):
-            return (network_kernel(definition), *kernels_of(definition, by_modes=limited))
-        return kernels_of(definition, by_modes=True)  # of the designs of which covariances are not sure
+        mechanism, every = search.mechanism(), kernels_of(definition, by_modes=True)
+        if not is_exact_norm(self) or definition_over_strut(mechanism, definition) is None:
+            return every
+        if limited:
+            return (network_kernel(definition), *every)
+        problem = linear_problem(mechanism, definition, CONVENTIONS[self.conventions])
+        return (network_kernel(definition), first_kernel(problem))  # by which optima are confirmed
 
 
 EXACT_NORM = Norm()  # which other code may compute in its place

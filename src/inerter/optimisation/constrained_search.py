@@ -1,8 +1,8 @@
 """Local optima of a peak gain, and under constraints: of an index or, where no design is feasible, of the violation.
 
 All functions are in logarithms. A smooth function is one row; a maximum of smooth functions has a row for each of its
-peaks: during the approach those of the current point, which gets close in a few steps; then a fixed set, to which
-exceeding peaks are added until there are none.
+peaks: those of the current point, each in its row, which converges where no peak appears or vanishes; then a fixed set,
+to which exceeding peaks are added until there are none.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ Array = NDArray[np.float64]
 KEPT = 1e-7  # tolerance of a constraint, of the logarithm; the exact optimum is on the limit
 KEPT_COSTLY = 1e-4  # the same for values that are simulated
 _STEEP = 10.0  # weight of the constraint violation in the selection of starts
+_MOST_ROUNDS = 21  # of a refinement: along the peaks of each point, and over fixed sets
 _PEAKS = 8  # slots for peaks during the approach
 _HIDDEN = -700.0  # logarithm of an absent peak
 _STANDS_OUT = 1e-9
@@ -69,8 +70,7 @@ class ConstrainedProblem:
         which = (None,) * len(self.functions) if known is None else known
         found = [_log_rows(f, point, peaks, known is None) for f, peaks in zip(self.functions, which, strict=True)]
         if not self.bounds:
-            ((logs, slopes),) = found
-            return LogRows(logs, slopes, np.ones(logs.size), np.zeros(0), np.zeros((0, point.size)))
+            return LogRows(*found[0], np.ones(found[0][0].size), np.zeros(0), np.zeros((0, point.size)))
         own = [] if self.objective is None else [found.pop(0)]
         logs, slopes, under = [a for a, _ in own], [b for _, b in own], [np.ones(a.size) for a, _ in own]
         equal, equal_slopes = [np.zeros(0)], [np.zeros((0, point.size))]
@@ -105,7 +105,10 @@ def _log_rows(function: Differentiable, point: Array, which: Any, following: boo
         value, gradient = function.value_and_gradient(point)
         values, gradients = np.array([value]), gradient[None]
     else:
-        values, gradients = function.components(point, peaks[:_PEAKS] if following else peaks)
+        chosen = peaks[:_PEAKS] if following else peaks
+        if following and chosen.dtype == float:  # a frequency keeps its row when another peak becomes the highest
+            chosen = np.sort(chosen)
+        values, gradients = function.components(point, chosen)
     count = _PEAKS if peaks is not None and following else values.size
     logs, slopes = np.full(count, _HIDDEN), np.zeros((count, point.size))
     good = np.isfinite(values) & (values > 0.0) & np.isfinite(gradients).all(axis=1)
@@ -130,20 +133,21 @@ def _approach_minimax(problem: ConstrainedProblem, start: Array) -> LocalOptimum
 
 
 def refine_minimax(problem: ConstrainedProblem, start: LocalOptimum) -> LocalOptimum:
-    """The optimum near `start`, over a fixed set of peaks, to which exceeding ones are added."""
-    best, point, evaluations = start, start.point, start.evaluations
-    known = problem.active_peaks(point)
-    for _ in range(20):
-        fixed = partial(problem.rows, known=known)
-        point, count = lowest_level(fixed, point, problem.lower, problem.upper, tolerance=1e-13, most_steps=100)
+    """The optimum near `start`: by the peaks of each point, then by a fixed set, to which exceeding ones are added."""
+    best, point, evaluations, known = start, start.point, start.evaluations, None
+    for _ in range(_MOST_ROUNDS):
+        rows = partial(problem.rows, known=known)
+        point, count = lowest_level(rows, point, problem.lower, problem.upper, tolerance=1e-13, most_steps=100)
         found = problem.at(point, 0)
         evaluations += count + 2
         if _is_better(found, best, _EXACTLY):
             best = found
+        point = best.point if known is None else point
         seen = problem.active_peaks(point)
-        if all(peaks is None for peaks in seen) or _is_converged(problem, point, known, found):
+        if all(peaks is None for peaks in seen) or (known and _is_converged(problem, point, known, found)):
             break
-        known = tuple(None if old is None else np.concatenate([old, new]) for old, new in zip(known, seen, strict=True))
+        pairs = zip(known or len(seen) * (None,), seen, strict=True)
+        known = tuple(new if old is None else np.concatenate([old, new]) for old, new in pairs)
     return replace(best, evaluations=evaluations)
 
 

@@ -201,8 +201,8 @@ def test_what_friction_damps_is_the_same_whatever_the_period(damping, force):
             evaluate(car, index, ApproximateLinear(MultisineExcitation(lowest=lowest), realisations=count))
             for lowest, count in ((0.1, 6), (0.025, 3))
         )
-        # friction of 300 N turns so often that steps four times as short change the gains by 4 %
-        assert short.status.ok or (force == 300.0 and "time step" in short.status.message)
+        # friction of 300 N and more turns so often that steps four times as short change the gains by 4 %
+        assert short.status.ok or (force >= 300.0 and "time step" in short.status.message)
         assert abs(short.value - long.value) < 4.0 * math.hypot(short.standard_error, long.standard_error)
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
@@ -43,11 +44,23 @@ _MOST_ENTRIES = 9  # of a legend below a figure of the usual height
 
 @dataclass(frozen=True)
 class StudyFigure:
-    """Figure of a study: file name, caption, and drawing function."""
+    """Figure of a study: file name, caption, number of panels with what draws on them, and height of a row [inch]."""
 
     name: str
     caption: str
-    draw: Callable[[], Figure]
+    panels: int
+    curves: Callable[[Sequence[Axes]], object]
+    height: float = 2.9
+    columns: int | None = None  # all panels side by side if left out
+    has_legend: bool = True
+
+    def draw(self) -> Figure:
+        """The figure, drawn."""
+        figure, axes = new_figure(self.panels, self.columns or self.panels, height=self.height)
+        self.curves(axes)
+        if self.has_legend:
+            add_legend(figure, axes)
+        return figure
 
 
 def study_figures(results: xr.Dataset) -> list[StudyFigure]:
@@ -73,15 +86,20 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             + f"{by_which(results)}."
             + _uncertain(results, " Bars with caps: one standard error.")
             + (" Bars with a triangle are cut." if _any(_cut(results)) else ""),
-            partial(_improvement, results),
+            1,
+            lambda axes: improvement_bars(results, axes[0]),
+            2.9 if len(compared_layouts(results)) <= 5 else 3.6,
         )
-    if compared_layouts(results) and several:
+    names = compared_layouts(results)
+    if names and several:
         yield StudyFigure(
             "methods",
             f"Improvement over {baseline} by each method."
             + _uncertain(every, " Bars with caps: one standard error.")
             + (f" Triangles: below {format_number(WORST)} %." if _any(_cut(every)) else ""),
-            partial(_methods, every),
+            results.sizes["index"],
+            partial(improvement_by_method, every),
+            2.9 + (0.06 * max(map(len, names)) if upright_names(names) else 0.0),
         )
     if criteria(every) and bool(np.isfinite(every["front_value"]).any()):
         yield StudyFigure(
@@ -90,22 +108,31 @@ def _of_designs(results: xr.Dataset) -> Iterator[StudyFigure]:
             f"{'the other' if len(criteria(every)) == 2 else 'another'} gets worse. Large open markers: the knee, "
             "beyond which a small gain costs much."
             + (" Gaps: the front continues with another kind of design." if bool(every["front_jump"].any()) else ""),
-            partial(_front, every),
+            len(pairs(every)),
+            partial(front_curves, every),
+            3.6 if len(pairs(every)) == 1 else 2.9,
         )
     linear = "Linear frequency response" if "realisations" in results else "Frequency response"
     for index in indices(results):
         if f"gain_{index}" in results:
+            excited = results.isel({f"output_{index}": _has_response(results, index)})
+            outputs = excited.sizes[f"output_{index}"]
             yield StudyFigure(
                 f"response-{index}",
                 f"{linear} of the designs that are best for {index_words(results, index)}."
                 + _still(results, index)
                 + _nearest(results.sel(index=index), "Of a layout without a feasible design, that"),
-                partial(_response, results, index),
+                outputs,
+                partial(frequency_responses, excited, index),
+                3.0,
+                min(outputs, 2),
             )
 
 
 def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
     (element,), baseline = swept_words(results), results.attrs["baseline"]
+    names, parameters = methods(results), results.sizes["parameter"]
+    is_crowded = len(names) > 1 and len(names) + len(layouts(results)) > _MOST_ENTRIES
     for index in indices(results):
         here = results.sel(index=index)
         title = index_words(results, index)
@@ -118,9 +145,11 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
             + _uncertain(results, " Bands: one standard error to both sides.")
             + (f" Below {format_number(WORST)} % the curves are cut." if _any(_cut(here)) else "")
             + _limits(here, "Open markers" if markers_shown(results) else "", "No curve"),
-            partial(_sweep, results, index),
+            2 if compared_layouts(results) else 1,
+            partial(sweep_curves, results, index),
+            3.4 if is_crowded else 2.9,
         )
-        if results.sizes["parameter"]:
+        if parameters:
             at_bound, flat = here["at_bound"], here["parameter_high"] > WIDE_RANGE * here["parameter_low"]
             yield StudyFigure(
                 f"parameters-{index}",
@@ -128,7 +157,10 @@ def _of_sweep(results: xr.Dataset) -> Iterator[StudyFigure]:
                 + (" Open markers: at a bound." if markers_shown(results) and _any(at_bound != "") else "")
                 + (" Bands: equally good designs." if _any(flat) else "")
                 + _nearest(here, "Without a feasible design, those"),
-                partial(_parameters, results, index),
+                parameters,
+                partial(parameter_curves, results, index),
+                2.6,
+                parameters if parameters <= 3 else 2,
             )
 
 
@@ -147,18 +179,25 @@ def _of_map(results: xr.Dataset) -> Iterator[StudyFigure]:
             + _limits(here, "Black dots", "Grey")
             + (" Grey: no finite value." if _any(~np.isfinite(here["value"]) & ~infeasible(here)) else "")
             + (f" The values {others} are in summary.csv." if others else ""),
-            partial(_map, results, index),
+            results.sizes["layout"],
+            partial(index_maps, results, index),
+            2.7,
+            min(results.sizes["layout"], _MOST_MAPS),
+            has_legend=False,
         )
         for parameter in results["parameter"].values.tolist():
-            shown = parameter_panels(results, index, parameter)
-            if shown:
+            if shown := len(parameter_panels(results, index, parameter)):
                 yield StudyFigure(
                     f"map-{parameter}-{index}",
                     f"Best {parameter} for {title}, over {words}."
                     + (" Open circles: at a bound." if _any(here["at_bound"].sel(parameter=parameter) != "") else "")
                     + _limits(here, "Black dots", "")
                     + _nearest(here, "Without a feasible design, that"),
-                    partial(_parameter_map, results, index, parameter),
+                    shown,
+                    partial(parameter_maps, results, index, parameter),
+                    2.7,
+                    min(shown, _MOST_MAPS),
+                    has_legend=False,
                 )
 
 
@@ -195,32 +234,6 @@ def _uncertain(results: xr.Dataset, sentence: str) -> str:
     return sentence if "improvement_error" in results and bool((results["improvement_error"] > 0.0).any()) else ""
 
 
-def _front(results: xr.Dataset) -> Figure:
-    panels = len(pairs(results))
-    figure, axes = new_figure(panels, panels, height=3.6 if panels == 1 else 2.9)
-    front_curves(results, axes)
-    add_legend(figure, axes)
-    return figure
-
-
-def _methods(results: xr.Dataset) -> Figure:
-    panels = results.sizes["index"]
-    upright = upright_names(compared_layouts(results))
-    figure, axes = new_figure(
-        panels, panels, height=2.9 + (0.06 * max(map(len, compared_layouts(results))) if upright else 0.0)
-    )
-    improvement_by_method(results, axes)
-    add_legend(figure, axes)
-    return figure
-
-
-def _improvement(results: xr.Dataset) -> Figure:
-    figure, axes = new_figure(height=2.9 if len(compared_layouts(results)) <= 5 else 3.6)
-    improvement_bars(results, axes[0])
-    add_legend(figure, axes)
-    return figure
-
-
 def _has_response(results: xr.Dataset, index: str) -> NDArray[np.bool_]:
     """True for each output of an index with a nonzero response; roll has none where both tracks are equal."""
     gain = results[f"gain_{index}"]
@@ -232,43 +245,3 @@ def _still(results: xr.Dataset, index: str) -> str:
     """A sentence on the outputs that a figure leaves out."""
     names = results[f"output_{index}"].values[~_has_response(results, index)].tolist()
     return f" Not excited, and not shown: {format_list([in_words(name) for name in names])}." if names else ""
-
-
-def _response(results: xr.Dataset, index: str) -> Figure:
-    results = results.isel({f"output_{index}": _has_response(results, index)})
-    outputs = results.sizes[f"output_{index}"]
-    figure, axes = new_figure(outputs, min(outputs, 2), height=3.0)
-    frequency_responses(results, index, axes)
-    add_legend(figure, axes)
-    return figure
-
-
-def _sweep(results: xr.Dataset, index: str) -> Figure:
-    panels = 2 if compared_layouts(results) else 1
-    crowded = len(methods(results)) > 1 and len(methods(results)) + len(layouts(results)) > _MOST_ENTRIES
-    figure, axes = new_figure(panels, panels, height=3.4 if crowded else 2.9)
-    sweep_curves(results, index, axes)
-    add_legend(figure, axes)
-    return figure
-
-
-def _map(results: xr.Dataset, index: str) -> Figure:
-    panels = results.sizes["layout"]
-    figure, axes = new_figure(panels, min(panels, _MOST_MAPS), height=2.7)
-    index_maps(results, index, axes)
-    return figure
-
-
-def _parameter_map(results: xr.Dataset, index: str, parameter: str) -> Figure:
-    panels = len(parameter_panels(results, index, parameter))
-    figure, axes = new_figure(panels, min(panels, _MOST_MAPS), height=2.7)
-    parameter_maps(results, index, parameter, axes)
-    return figure
-
-
-def _parameters(results: xr.Dataset, index: str) -> Figure:
-    panels = results.sizes["parameter"]
-    figure, axes = new_figure(panels, panels if panels <= 3 else 2, height=2.6)
-    parameter_curves(results, index, axes)
-    add_legend(figure, axes)
-    return figure

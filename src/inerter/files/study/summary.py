@@ -12,7 +12,7 @@ import xarray as xr
 from inerter.atomic_io import open_text
 from inerter.files.study.cases import Case, cases
 from inerter.files.study.conditions import IN_CONDITIONS, condition_labels
-from inerter.files.study.design_numbers import DESIGN_NUMBERS, number_entry, numbers_in
+from inerter.files.study.design_numbers import DESIGN_NUMBERS, ENDS, NUMBER, numbers_in
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain, units_by_name
 from inerter.files.study.study import Study
 from inerter.formatting import label_with_unit
@@ -23,10 +23,15 @@ _AT_ONCE = 10_000  # designs that are made plain numbers together
 
 def write_summary(path: Path, study: Study, data: xr.Dataset) -> None:
     """Write each design and method: labels, value, improvement over the baseline, and parameters."""
+    columns, units = _columns(study, data), units_by_name(data, "index")
+    parameters = data.parameter.values.tolist()
     with open_text(path) as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(_header(study, data))
-        writer.writerows(map(csv_cells, _rows(study, data)))
+        writer.writerow([heading for heading, _, _ in columns])
+        for case, method, design in design_rows(data, study):
+            at_bound = bounds_text(dict(zip(parameters, design["at_bound"], strict=True)))
+            row = {**vars(case), **design, "method": method, "unit": units[case.index], "at_bound": at_bound}
+            writer.writerow(csv_cells([row[name] if i is None else row[name][i] for _, name, i in columns]))
 
 
 def bounds_text(active: Mapping[str, str]) -> str:
@@ -34,41 +39,48 @@ def bounds_text(active: Mapping[str, str]) -> str:
     return ";".join(f"{name}:{end}" for name, end in active.items() if end)
 
 
-def _header(study: Study, data: xr.Dataset) -> list[str]:
+def _columns(study: Study, data: xr.Dataset) -> list[tuple[str, str, int | None]]:
+    """Heading of each column, name of its contents in a row, and for one of several contents its number."""
+    parameters, indices = units_by_name(data, "parameter"), units_by_name(data, "index")
+    on_parts = data["limit.each"].values.tolist() if "limit.each" in data else []
+    alone = [
+        *("value", "unit", "improvement", "standard_error", "error_bound", "status"),
+        *(UNCERTAIN if is_uncertain(study) else ()),
+    ]
+    numbers = [
+        (label_with_unit(name, DESIGN_NUMBERS[name].unit) if end == ENDS[0] else f"{name}.{end}", name, end)
+        for name in numbers_in(data)
+        for end in ENDS
+    ]
     return [
-        *("layout", "index", "method"),
-        *(label_with_unit(sweep.label, sweep.unit) for sweep in study.sweeps),
-        *("value", "unit", "improvement_percent", "standard_error", "error_bound", "status"),
-        *(f"{name}_percent" if name in PERCENT else name for name in _more(study)),
-        *(label_with_unit(name, unit) for name, unit in units_by_name(data, "parameter").items()),
-        *("at_bound", "starts", "agreed"),
-        *(label_with_unit(f"{name} of this design", unit) for name, unit in units_by_name(data, "index").items()),
+        *((name, name, None) for name in ("layout", "index", "method")),
+        *((label_with_unit(sweep.label, sweep.unit), "swept", i) for i, sweep in enumerate(study.sweeps)),
+        *((f"{name}_percent" if name in PERCENT else name, name, None) for name in alone),
+        *((label_with_unit(*one), "parameter_value", i) for i, one in enumerate(parameters.items())),
+        *((name, name, None) for name in ("at_bound", "starts", "agreed")),
         *(
-            text
-            for limit in study.limits
-            for text in (label_with_unit(limit.words, limit.unit), f"cost of {limit.words}_percent")
-        ),
-        *(f"part of {study.limits[i].words}" for i in _on_parts(data)),
-        *(
-            text
-            for name in numbers_in(data)
-            for text in (label_with_unit(name, DESIGN_NUMBERS[name].unit), f"{name}.error_bound", f"{name}.status")
+            (label_with_unit(f"{name} of this design", unit), "other_value", i)
+            for i, (name, unit) in enumerate(indices.items())
         ),
         *(
-            text
-            for label in condition_labels(study.conditions)
-            for text in (f"value in {label}", f"improvement in {label}_percent")
+            column
+            for i, limit in enumerate(study.limits)
+            for column in (
+                (label_with_unit(limit.words, limit.unit), "limit_value", i),
+                (f"cost of {limit.words}_percent", "limit_cost", i),
+            )
+        ),
+        *((f"part of {study.limits[i].words}", "limit.part", i) for i, each in enumerate(on_parts) if each),
+        *((heading, f"{NUMBER}{name}.{end}", None) for heading, name, end in numbers),
+        *(
+            column
+            for i, label in enumerate(condition_labels(study.conditions))
+            for column in (
+                (f"value in {label}", f"{IN_CONDITIONS}value", i),
+                (f"improvement in {label}_percent", f"{IN_CONDITIONS}improvement", i),
+            )
         ),
     ]
-
-
-def _on_parts(data: xr.Dataset) -> list[int]:
-    """Numbers of the limits that apply to each tyre or strut separately."""
-    return [i for i, each in enumerate(data["limit.each"].values.tolist()) if each] if "limit.each" in data else []
-
-
-def _more(study: Study) -> list[str]:
-    return list(UNCERTAIN) if is_uncertain(study) else []
 
 
 def design_rows(data: xr.Dataset, study: Study) -> Iterator[tuple[Case, str, dict[str, Any]]]:
@@ -85,30 +97,3 @@ def design_rows(data: xr.Dataset, study: Study) -> Iterator[tuple[Case, str, dic
             for m, method in enumerate(study.evaluate):
                 row = {name: value[m] if name in by_method else value for name, value in design.items()}
                 yield everything[start + i], method, row
-
-
-def _rows(study: Study, data: xr.Dataset) -> Iterator[list[Any]]:
-    more, parts, numbers = _more(study), _on_parts(data), numbers_in(data)
-    parameters = data.parameter.values.tolist()
-    units = units_by_name(data, "index")
-    for case, method, row in design_rows(data, study):
-        yield [
-            case.layout,
-            case.index,
-            method,
-            *case.swept,
-            *(row["value"], units[case.index], row["improvement"]),
-            *(row["standard_error"], row["error_bound"], row["status"]),
-            *(row[name] for name in more),
-            *row["parameter_value"],
-            *(bounds_text(dict(zip(parameters, row["at_bound"], strict=True))), row["starts"], row["agreed"]),
-            *row["other_value"],
-            *(row[name][i] for i in range(len(study.limits)) for name in ("limit_value", "limit_cost")),
-            *(row["limit.part"][i] for i in parts),
-            *(content for name in numbers for content in number_entry(name, row).values()),
-            *(
-                row[f"{IN_CONDITIONS}{name}"][i]
-                for i in range(len(study.conditions))
-                for name in ("value", "improvement")
-            ),
-        ]

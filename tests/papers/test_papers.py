@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 import inerter
-from inerter.cli import commands
+from inerter.cli import papers as command
 from inerter.cli.main import call
 from inerter.cli.options import WorkOptions
 from inerter.errors import StudyError
@@ -115,7 +115,7 @@ def test_another_paper_needs_no_more_than_its_row(
     monkeypatch.setattr(PAPERS, "_entries", dict(PAPERS))
     PAPERS.add(one)
     folder = tmp_path / "out"
-    told = commands.reproduce(one.name, ("table",), WorkOptions(folder, jobs=2, json=as_json))
+    told = command.reproduce(one.name, ("table",), WorkOptions(folder, jobs=2, json=as_json))
     assert exit_code(told) == 0
     assert (folder / "table.csv").read_text() == "7\n"
     said = capsys.readouterr()
@@ -124,7 +124,7 @@ def test_another_paper_needs_no_more_than_its_row(
         assert json.loads(said.out) == {"table": [{"value": 7, "only": ["table"], "jobs": 2}]}
     else:
         assert said.out == "seven\n"
-    commands.papers()
+    command.papers()
     assert "one-2031\n  One (2031), A table of one number\n  Parts: table.\n  Claims: 0. Figures: 1." in (
         capsys.readouterr().out
     )

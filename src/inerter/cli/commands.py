@@ -1,17 +1,13 @@
-"""Implementation of the commands `run`, `papers` and `reproduce`."""
+"""Implementation of the command `run`."""
 
 from __future__ import annotations
 
-import json
 from itertools import islice
 from pathlib import Path
 from textwrap import wrap
 
-from inerter.cli.cluster import workers
-from inerter.cli.interrupts import interruptible
 from inerter.cli.options import WorkOptions
 from inerter.cli.pace import Pace
-from inerter.cli.progress import steps
 from inerter.cli.streams import say
 from inerter.cli.study_work import study_work
 from inerter.files.common.folder import REPORT
@@ -22,8 +18,6 @@ from inerter.files.study.running import SUMMARY, StudyResult, run_study
 from inerter.files.study.study import Study
 from inerter.files.study.tasks import tasks
 from inerter.formatting import format_list, merge_alike
-from inerter.papers.paper import Paper
-from inerter.papers.registry import PAPERS
 from inerter.report.problem_statement import index_rows
 from inerter.report.study_contents import StudyContents
 from inerter.report.study_data import as_text
@@ -56,7 +50,7 @@ def run(study: Path, options: WorkOptions) -> tuple[Statement, ...]:
         for note in result.data.attrs["notes"].splitlines():
             print("\n".join(wrap(f"Note: {note}.", WIDTH, subsequent_indent="      ")))
         print("\n".join(["", *(line for text in contents.conclusions for line in _hanging(text))]))
-    _report_failures(result)
+    report_failures(result)
     return (result.status,)
 
 
@@ -71,35 +65,7 @@ def _pace(study: Study) -> Pace:
     return Pace(free, study.indices, cases(study).points, parts)
 
 
-def papers() -> None:
-    """Print the available papers with their parts."""
-    print("\n\n".join(_describe_paper(paper) for paper in PAPERS.values()))
-
-
-def _describe_paper(paper: Paper) -> str:
-    lines = (f"Parts: {', '.join(paper.parts)}.", f"Claims: {len(paper.claims)}. Figures: {len(paper.figures)}.")
-    told = [*wrap(paper.title, WIDTH - 2), *(line for text in lines for line in wrap(text, WIDTH - 2))]
-    return "\n".join([paper.name, *(f"  {line}" for line in told)])
-
-
-def reproduce(name: str, only: tuple[str, ...], options: WorkOptions) -> tuple[Statement, ...]:
-    """Reproduce the paper of that name, or some parts of it; returns the statuses of its studies."""
-    paper = PAPERS[name]
-    folder = options.output or Path(f"{name}-results")
-    own = options.processes
-    parts = (word for part in only for word in ("--only", part))
-    kept = options.continuation_clause(("reproduce", name, *parts), folder)
-    settings = {"jobs": own, "resume": options.resume, "force": options.force}
-    with interruptible(lambda: kept), workers(options.cluster, options.jobs) as executor, steps() as callback:
-        found = paper.reproduce(folder, only=only, executor=executor, progress=callback, **settings)
-    say(f"report: {folder / REPORT}")
-    print(json.dumps(paper.as_data(found), indent=2) if options.json else paper.as_text(found))
-    for result in found.studies.values():
-        _report_failures(result)
-    return tuple(result.status for result in found.studies.values())
-
-
-def _report_failures(result: StudyResult) -> None:
+def report_failures(result: StudyResult) -> None:
     """Report designs whose status is not ok on stderr, those with the same status in one line."""
     failing = list(islice(result.statuses_not_ok(), _MOST))
     for status, places in merge_alike([status for _, status in failing]):

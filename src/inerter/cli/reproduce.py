@@ -45,8 +45,8 @@ def reproduce(
     paper
         Name of the paper; default: list all papers.
     """
-    from inerter.cli.commands import papers
-    from inerter.cli.commands import reproduce as command
+    from inerter.cli.papers import papers
+    from inerter.cli.papers import reproduce as command
 
     if paper is None:
         if only or options != DEFAULT_WORK:

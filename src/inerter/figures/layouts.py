@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from inerter.errors import NetworkError
-from inerter.figures.networks import draw_networks
+from inerter.figures.networks import draw_networks, networks_by_title
 from inerter.figures.style import file_stems
 from inerter.files.study.study import Study
 from inerter.networks.parser import network
@@ -24,16 +24,9 @@ def draw_layouts(study: Study, folder: Path) -> list[Path]:
     """
     files, stems = [], layout_figures(study)
     for name, layout in study.layouts.items():
-        mounts: dict[str, list[str]] = {}
-        for mount, text in layout.struts.items():
-            mounts.setdefault(text, []).append(mount)
-        alone = len(mounts) == 1
         try:
-            networks = {
-                "" if alone else ", ".join(at).replace("_", " "): network(text, **study.elements)
-                for text, at in mounts.items()
-            }
+            networks = {mount: network(text, **study.elements) for mount, text in layout.struts.items()}
         except NetworkError:  # a distribution's element that cannot be mounted by itself
             continue
-        files += draw_networks(networks, folder, stems[name], alone=True)
+        files += draw_networks(networks_by_title(networks), folder, stems[name], alone=True)
     return files

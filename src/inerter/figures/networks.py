@@ -81,6 +81,14 @@ class Schematic:
         return placed, tuple(translate_line(line, x, y) for line in self.lines)
 
 
+def networks_by_title(networks: Mapping[str, Network]) -> dict[str, Network]:
+    """Networks by their titles; mounts with the same network share one, and one alone has none."""
+    together: dict[Network, list[str]] = {}
+    for name, network in networks.items():
+        together.setdefault(network, []).append(name.replace("_", " "))
+    return {"" if len(together) == 1 else ", ".join(names): network for network, names in together.items()}
+
+
 def draw_networks(
     networks: Mapping[str, Network], folder: Path, name: str, *, values: bool = False, alone: bool = False
 ) -> list[Path]:

@@ -15,8 +15,7 @@ if TYPE_CHECKING:
 
 
 def _figure(request: ExportSpec, suffix: str) -> bytes:
-    from inerter.figures.networks import network_figure  # noqa: PLC0415 - heavy
-    from inerter.figures.plots.network import networks_by_title  # noqa: PLC0415 - heavy
+    from inerter.figures.networks import network_figure, networks_by_title  # noqa: PLC0415 - heavy
     from inerter.figures.style import UNDATED, style_context  # noqa: PLC0415 - heavy
 
     content = io.BytesIO()
@@ -29,7 +28,7 @@ def _figure(request: ExportSpec, suffix: str) -> bytes:
 
 def _tikz(request: ExportSpec, suffix: str) -> str:
     from inerter.figures.networks import schematic  # noqa: PLC0415 - heavy
-    from inerter.figures.plots.network import networks_by_title  # noqa: PLC0415 - heavy
+    from inerter.figures.networks import networks_by_title  # noqa: PLC0415 - heavy
 
     lines = ["% written by inerter; needs \\usepackage{tikz}, one unit is one point"]
     for title, network in networks_by_title(request.networks).items():

@@ -8,7 +8,7 @@ from io import StringIO
 from matplotlib.figure import Figure
 
 from inerter.errors import NetworkError
-from inerter.figures.networks import network_figure
+from inerter.figures.networks import network_figure, networks_by_title
 from inerter.figures.style import style_context
 from inerter.networks.elements.algebra import Network
 from inerter.validation import checked
@@ -43,11 +43,3 @@ def design_svg(design: Vehicle) -> str | None:
     """Drawing of the struts of a design as SVG, as notebooks show it; None if it has none."""
     struts = {strut.name: strut.network for strut in design.mechanism().struts}
     return network_svg(networks_by_title(struts)) if struts else None
-
-
-def networks_by_title(networks: Mapping[str, Network]) -> dict[str, Network]:
-    """Networks by their titles; mounts with the same network share one, and one alone has none."""
-    together: dict[Network, list[str]] = {}
-    for name, network in networks.items():
-        together.setdefault(network, []).append(name.replace("_", " "))
-    return {"" if len(together) == 1 else ", ".join(names): network for network, names in together.items()}

@@ -24,11 +24,12 @@ from inerter.files.common.problem import EntryError, invalid_entry
 from inerter.files.common.schema import list_schema, quantity_schema, words_schema
 from inerter.files.common.suggest import nearest
 from inerter.formatting import format_alike, format_number, format_range, in_words
-from inerter.networks.elements import NAME, Element, Free
+from inerter.networks.elements import NAME, Free
 from inerter.networks.elements.registry import kinds_by_unit, parse_element
 from inerter.networks.parser import rename_in_expression
 from inerter.systems.outputs import rename_output
 from inerter.units import parse_quantity, quote_value, unit_in
+from inerter.validation import is_number
 
 LOWER, UPPER = "from", "to"  # the keys of the bounds of a free value, and of the ends of a range
 MOST_POINTS = 10_000_000
@@ -145,11 +146,10 @@ def range_codec(
     end: Codec, lower: str, upper: str, make: Callable[..., tuple[Any, Any]] = range_between, about: str = ""
 ) -> TableCodec:
     """Table of the two ends of a range, each with an example; `make` turns both into one value."""
-    ends = ((LOWER, "lower", "Lower bound.", lower), (UPPER, "upper", "Upper bound.", upper))
     return TableCodec(
-        tuple(
-            Declaration(end, sentence, f'{name} = "{text}"', name=name, attribute=attribute)
-            for name, attribute, sentence, text in ends
+        (
+            Declaration(end, "Lower bound.", f'{LOWER} = "{lower}"', name=LOWER, attribute="lower"),
+            Declaration(end, "Upper bound.", f'{UPPER} = "{upper}"', name=UPPER, attribute="upper"),
         ),
         make,
         lambda value: dict(zip(("lower", "upper"), value, strict=True)),
@@ -250,7 +250,7 @@ def declaration_of(one: Field | TextChoice, *, optional: bool = False, free: boo
 
 def positive_number(value: Any) -> float:
     """A number greater than zero, without a unit."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < float("inf"):
+    if not is_number(value) or value <= 0.0:
         raise invalid_entry(value, expected="a positive number without quotes, such as 1.02")
     return float(value)
 
@@ -267,7 +267,13 @@ def yes_or_no(value: Any) -> bool:
 
 def amount(text: Any) -> Amount:
     """The value of an element whose kind its unit tells."""
-    return _amount(text, kinds_by_unit())
+    known = kinds_by_unit()
+    unit, value = parse_element(text, known)
+    _check_size(value, text, unit)
+    if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
+        hint = "To leave the element out, drop its branch from the layouts."
+        raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}", hint=hint)
+    return Amount(unit, value)
 
 
 def quantity_text(text: Any) -> str:
@@ -285,15 +291,6 @@ AMOUNT = Scalar(
     },
 )
 SWEPT = Scalar(quantity_text, quantity_schema)
-
-
-def _amount(text: Any, known: Mapping[str, type[Element]]) -> Amount:
-    unit, value = parse_element(text, known)
-    _check_size(value, text, unit)
-    if value < 0.0 or (value == 0.0 and not known[unit].may_vanish):
-        hint = "To leave the element out, drop its branch from the layouts."
-        raise invalid_entry(text, fault="not positive", expected=f"more than 0 {unit}", hint=hint)
-    return Amount(unit, value)
 
 
 YES_OR_NO = Scalar(yes_or_no, lambda: {"type": "boolean"})

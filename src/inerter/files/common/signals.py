@@ -123,11 +123,6 @@ def _table(kind: str, unit: str) -> TableCodec:
         return {"kind": kind, **values}
 
     keys = {name: one.of(unit) for name, one in SIGNALS[kind].keys.items()}
-    own = [
-        Declaration(one.codec(one.unit), one.sentence, one.example, one.default, name, name)
-        for name, one in keys.items()
-    ]
-    moved = Declaration(
-        TEXT, "Input that has the signal; default: road, displacement or force.", "", None, "input", "input"
-    )
+    own = [section(name, one.codec(one.unit), one.sentence, one.example, one.default) for name, one in keys.items()]
+    moved = section("input", TEXT, "Input that has the signal; default: road, displacement or force.", default=None)
     return TableCodec((*own, moved), make, tag=("kind", kind, "The kind of signal."))

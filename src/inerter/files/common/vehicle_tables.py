@@ -11,7 +11,6 @@ from inerter.errors import RegistryError, UnitError
 from inerter.field_metadata import fields_of
 from inerter.files.common.codec import (
     INVALID,
-    REQUIRED,
     Codec,
     Declaration,
     KeyPath,
@@ -21,6 +20,7 @@ from inerter.files.common.codec import (
     key,
     keyed_dataclass,
     keys_in,
+    section,
     table_of,
 )
 from inerter.files.common.codecs import NamesCodec, TaggedCodec, WeightsCodec
@@ -56,15 +56,6 @@ NO_MEASURES: Mapping[str, Any] = {"comfort": NOTHING, "tyre_load": None, "load_i
 
 class Length(float):
     """The lever of an angle [m]."""
-
-
-def lever(entry: Any) -> float:
-    """The lever of a coordinate: a number; of an angle a length."""
-    if isinstance(entry, str):
-        return Length(parse_quantity(entry, "m"))
-    if not is_number(entry):
-        raise invalid_entry(entry, expected='a number such as 1, or for an angle a length such as "1.2 m"')
-    return float(entry)
 
 
 def inertia(entry: Any) -> Amount:
@@ -152,7 +143,11 @@ class LeverCodec(Codec):
 
     def load(self, raw: Any, context: LoadContext) -> float:
         """The number, or a `Length` [m]."""
-        return lever(raw)
+        if isinstance(raw, str):
+            return Length(parse_quantity(raw, "m"))
+        if not is_number(raw):
+            raise invalid_entry(raw, expected='a number such as 1, or for an angle a length such as "1.2 m"')
+        return float(raw)
 
     def schema(self) -> dict[str, Any]:
         """The JSON Schema of both."""
@@ -309,7 +304,7 @@ def _coordinates(free: bool) -> Declaration:
     sentence = "Degrees of freedom: the mass or moment of inertia of each; 0 for a node that joins networks."
     example = 'a section [vehicle.coordinates] with lines such as body = "250 kg"'
     table = NamesCodec(InertiaCodec(free), part_name, least=1)
-    return Declaration(table, sentence, example, REQUIRED, "coordinates", "coordinates")
+    return section("coordinates", table, sentence, example)
 
 
 def _seat(free: bool) -> Declaration:

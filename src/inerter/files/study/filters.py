@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from inerter.files.common.codec import Declaration, Scalar, TableCodec
+from inerter.files.common.codec import Scalar, TableCodec, section
 from inerter.files.common.problem import EntryError
 from inerter.formatting import format_number
 from inerter.systems.filters import Filter
@@ -28,19 +28,12 @@ _COEFFICIENTS = Scalar(
 )
 FILTER = TableCodec(
     (
-        Declaration(
-            _COEFFICIENTS,
-            "Coefficients of s, the highest power first.",
-            "numerator = [1.0, 0.0]",
-            name="numerator",
-            attribute="numerator",
-        ),
-        Declaration(
+        section("numerator", _COEFFICIENTS, "Coefficients of s, the highest power first.", "numerator = [1.0, 0.0]"),
+        section(
+            "denominator",
             _COEFFICIENTS,
             "Coefficients of s, the highest power first; all poles are stable.",
             "denominator = [1.0, 0.5]",
-            name="denominator",
-            attribute="denominator",
         ),
     ),
     make=Filter,  # which says what is wrong with it

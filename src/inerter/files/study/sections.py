@@ -60,6 +60,7 @@ from inerter.network_search.real_inerters import RealInerter
 from inerter.networks.elements.registry import format_unit_kinds
 from inerter.registry import cache_until_registration
 from inerter.units import quote_value
+from inerter.validation import is_number
 from inerter.vehicle.registry import VEHICLES
 
 _MOST_ROADS = 100_000
@@ -196,7 +197,7 @@ def _scatter(given: Any) -> float:
             number = float(given.rstrip()[:-1]) / 100.0
         except ValueError:
             number = None
-    if isinstance(number, bool) or not isinstance(number, int | float) or not 0.0 < number < 1.0:
+    if not is_number(number) or not 0.0 < number < 1.0:
         raise invalid_entry(given, expected='a part of the value between 0 and 1, such as 0.1 or "10 %"')
     return float(number)
 

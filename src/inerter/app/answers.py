@@ -262,7 +262,7 @@ def break_even(study: Study, body: Body) -> Answer:
             {"value": c.value, "standard_error": c.standard_error, "error_bound": c.error_bound, "better": c.better}
             for c in found.crossings
         ],
-        "ranges": [{"lower": r.lower, "upper": r.upper, "better": r.better} for r in found.ranges],
+        "ranges": list(map(vars, found.ranges)),
         "sentence": printed_text(_break_even_sentence(found, design.name, baseline.name)),
         **found.status.to_json(),
     }

@@ -16,7 +16,6 @@ from inerter.app.wire import typeset_sentences
 from inerter.decision.decide import decide_by_comparison
 from inerter.decision.of_study import at_bounds, decisive_method, goal_sentence, has_inerter, nonlinear_elements
 from inerter.decision.results import DesignResult, Improvement, IndexResult
-from inerter.files.study.conditions import condition_labels
 from inerter.files.study.sections import OVER
 from inerter.files.study.study import Study
 from inerter.formatting import format_list, printed_text
@@ -184,4 +183,4 @@ class _DesignComparison:
 
 def _condition_names(study: Study) -> list[str]:
     """Names of the conditions; none unless there are several."""
-    return condition_labels(study.conditions) if len(study.conditions) > 1 else []
+    return study.condition_labels if len(study.conditions) > 1 else []

@@ -22,7 +22,7 @@ from inerter.networks.elements import (
     free,
 )
 from inerter.networks.elements.roles import GuardRole
-from inerter.networks.parser import network
+from inerter.networks.parser import names, network
 from inerter.networks.transform import map_elements
 from inerter.vehicle.rig import Rig
 
@@ -49,11 +49,7 @@ VISCOUS: Mapping[str, str] = MappingProxyType({name: f"{name}-viscous" for name 
 
 def _model(before: str, parallel: str) -> Network:
     text = f"{before}({parallel})"
-    return network(text, **{name: element for name, element in _ELEMENTS.items() if name in _names(text)})
-
-
-def _names(text: str) -> list[str]:
-    return "".join(letter if letter.isalpha() else " " for letter in text).split()
+    return network(text, **{name: element for name, element in _ELEMENTS.items() if name in names(text)})
 
 
 MODELS: Mapping[str, Network] = MappingProxyType(

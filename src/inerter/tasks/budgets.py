@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import starmap
 from math import isfinite, nan
@@ -13,7 +13,7 @@ from inerter.errors import Status, StatusKind
 from inerter.figures.labels import index_title
 from inerter.files.common.problem import Problem, at
 from inerter.files.common.suggest import nearest, some
-from inerter.files.study.conditions import MOST_LISTED, condition_labels
+from inerter.files.study.conditions import MOST_LISTED
 from inerter.files.study.method_problems import unseen_problem
 from inerter.files.study.study import Study, elements_used
 from inerter.files.study.tasks import Answer, Designs, Task, TaskPart, TaskResults, best_design
@@ -64,7 +64,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
         )
         method, index = decisive_method(study.evaluate), study.over_conditions(self.index)
         if self.condition:
-            index = study.in_each(study.index(self.index))[condition_labels(study.conditions).index(self.condition)]
+            index = study.in_each(study.index(self.index))[study.condition_labels.index(self.condition)]
         found = element_break_even(design, baseline, index, self.parameter, study.method(method, threads))
         status = with_decisive_method(found.status, method)
         crossings = [crossing.value for crossing in found.crossings]
@@ -77,10 +77,7 @@ class BudgetPart(TaskPart["BudgetAnswer"]):
     def _answer(self, study: Study, status: Status, **numbers: Any) -> BudgetAnswer:
         element = study.elements[self.parameter]
         return BudgetAnswer(
-            layout=self.layout,
-            index=self.index,
-            parameter=self.parameter,
-            condition=self.condition,
+            **vars(self),
             unit=element.unit,
             method=decisive_method(study.evaluate),
             at_most=element.may_vanish,
@@ -120,7 +117,7 @@ class Budgets(Task[BudgetAnswer]):
     def parts(self, study: Study) -> list[BudgetPart]:
         """Task parts in the order of elements, indices, layouts, all conditions and each; the baseline is left out."""
         used = elements_used(study)
-        each = condition_labels(study.conditions) if len(study.conditions) > 1 else []
+        each = study.condition_labels if len(study.conditions) > 1 else []
         return [
             BudgetPart(layout, index, name, condition)
             for name in study.budgets
@@ -202,7 +199,7 @@ class Budgets(Task[BudgetAnswer]):
                     [f"{capital(what)}: {layout} is better than {study.baseline} {format_list(ends)}."] if ends else []
                 )
                 others = [found for found in sound if not _end_of_range(found)]
-                for message, of in _alike(data, others, lambda found: found.message):
+                for message, of in _alike(data, others):
                     told.append(f"{capital(what)}, {layout}, {of}: {message}.")
                 if told:
                     yield " ".join(told)
@@ -286,10 +283,8 @@ def _remark(found: BudgetAnswer) -> str:
     return found.message if found.status == StatusKind.UNBOUNDED else ""
 
 
-def _alike(
-    data: xr.Dataset, found: Sequence[BudgetAnswer], said: Callable[[BudgetAnswer], str]
-) -> Iterator[tuple[str, str]]:
-    """Sentences that differ in more than their numbers, each with the titles of the indices to which it applies."""
-    told = [one for one in found if said(one)]
-    for message, places in merge_alike([said(one).rstrip(".") for one in told]):
+def _alike(data: xr.Dataset, found: Sequence[BudgetAnswer]) -> Iterator[tuple[str, str]]:
+    """Messages that differ in more than their numbers, each with the titles of the indices to which it applies."""
+    told = [one for one in found if one.message]
+    for message, places in merge_alike([one.message.rstrip(".") for one in told]):
         yield message, format_list([index_title(data, told[place].index) for place in places])

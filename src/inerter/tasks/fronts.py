@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import StatusKind
 from inerter.files.common.problem import Problem, at
-from inerter.files.study.conditions import CONDITION, condition_labels
+from inerter.files.study.conditions import CONDITION
 from inerter.files.study.limits import all_limits
 from inerter.files.study.method_labels import method_labels
 from inerter.files.study.study import Study
@@ -176,11 +176,7 @@ class Fronts(Task[FrontAnswer]):
             *(Column(name, label_with_unit(name, free[name]), listed="Parameters") for name in names),
             *(Column(key=f"{name}_{which}") for name in study.trade_off for which in ("standard_error", "error_bound")),
             *(Column(key=key) for key in ("knee", "jump_after", "status")),
-            *(
-                Column(key=f"{name} in {label}")
-                for name in study.trade_off
-                for label in condition_labels(study.conditions)
-            ),
+            *(Column(key=f"{name} in {label}") for name in study.trade_off for label in study.condition_labels),
         ]
         rows = [row for one in results.answers for row in _rows(study, one, names)]
         return Table(f"{_title(study)}: the designs at the ends and the knee", heads, rows)

@@ -12,7 +12,7 @@ from math import isfinite, nan
 from inerter.decision.of_study import nonlinear_elements
 from inerter.decision.results import Improvement
 from inerter.errors import MechanismError, StatusKind
-from inerter.files.study.conditions import MOST_LISTED, condition_labels
+from inerter.files.study.conditions import MOST_LISTED
 from inerter.files.study.parts import FAILURES
 from inerter.files.study.speeds import BESIDE, estimate_at_speed, is_at_one_speed, quick_method
 from inerter.files.study.study import Study, elements_used
@@ -357,7 +357,7 @@ def _in_conditions(asked: MarginRequest, trial: _Trial, method: str) -> list[Con
     if not 1 < len(study.conditions) <= MOST_LISTED:
         return []
     each = []
-    for name, index in zip(condition_labels(study.conditions), study.in_each(study.index(asked.index)), strict=True):
+    for name, index in zip(study.condition_labels, study.in_each(study.index(asked.index)), strict=True):
         try:
             found = _find_break_even(asked, trial, method, index)
         except FAILURES as error:

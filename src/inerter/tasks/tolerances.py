@@ -59,8 +59,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
         numbers = found.nominal.value, found.mean, found.standard_deviation, found.quantile(SHARE), found.worst
         errors = {**found.standard_errors, "quantile": found.quantile_estimate(SHARE).standard_error or np.nan}
         return ToleranceAnswer(
-            layout=self.layout,
-            index=self.index,
+            **vars(self),
             method=method,
             unit=study.unit(self.index),
             numbers=dict(zip(_NUMBERS, numbers, strict=True)),
@@ -75,8 +74,7 @@ class TolerancePart(TaskPart["ToleranceAnswer"]):
     def failed_result(self, study: Study, message: str) -> ToleranceAnswer:
         """Answer without numbers, with status `failed`."""
         return ToleranceAnswer(
-            layout=self.layout,
-            index=self.index,
+            **vars(self),
             method=study.evaluate[0],
             unit=study.unit(self.index),
             numbers={},

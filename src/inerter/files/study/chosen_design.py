@@ -15,7 +15,6 @@ from inerter.files.common.listing import check_unchanged
 from inerter.files.common.problems import refusal
 from inerter.files.common.suggest import nearest, some
 from inerter.files.study.cases import Case, cases, run_case
-from inerter.files.study.conditions import condition_labels
 from inerter.files.study.loading import load_study, unchosen_problems
 from inerter.files.study.running import DATASET, RESOLVED
 from inerter.files.study.study import Study
@@ -55,7 +54,7 @@ class ChosenDesign:
             return ""
         if self.condition is None:
             return "with the numbers outside the conditions"
-        return f"in condition {condition_labels(self.study.conditions)[self.condition]}"
+        return f"in condition {self.study.condition_labels[self.condition]}"
 
     @cached_property
     def study_there(self) -> Study:
@@ -161,7 +160,7 @@ def _point(point: int | None, count: int, study: Study, source: Path) -> int:
 
 
 def _condition(given: str | None, study: Study, source: Path) -> int | None:
-    labels = condition_labels(study.conditions)
+    labels = study.condition_labels
     if given is None:
         return None
     if not labels:

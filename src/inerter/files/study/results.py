@@ -16,7 +16,7 @@ import inerter
 from inerter.errors import StatusKind
 from inerter.files.common.roads import EFFECT, OTHER_EFFECT, ROAD_ERROR
 from inerter.files.study.cases import Case, Outcome, cases
-from inerter.files.study.conditions import CONDITION, IN_CONDITIONS, condition_labels
+from inerter.files.study.conditions import CONDITION, IN_CONDITIONS
 from inerter.files.study.design_numbers import DESIGN_NUMBERS, NUMBER
 from inerter.files.study.limits import each_of, is_swept, limit_text
 from inerter.files.study.method_labels import limit_basis, method_labels
@@ -342,7 +342,7 @@ def _labels_of(study: Study, parameters: Mapping[str, str]) -> dict[str, Any]:
         labels[ROAD_ERROR] = list(_road_errors(study))
     if study.conditions:
         shares = np.array([condition.share for condition in study.conditions])
-        labels[CONDITION] = (CONDITION, condition_labels(study.conditions), {"over": study.over})
+        labels[CONDITION] = (CONDITION, study.condition_labels, {"over": study.over})
         labels[f"{IN_CONDITIONS}share"] = (CONDITION, shares / shares.sum())
     for sweep in study.sweeps:
         written = {"written": sweep.written} if sweep.written else {}

@@ -7,7 +7,6 @@ from math import isfinite, isnan, nan
 from typing import TYPE_CHECKING
 
 from inerter.errors import StatusKind
-from inerter.files.study.conditions import condition_labels
 from inerter.files.study.summary import bounds_text
 from inerter.formatting import (
     capital,
@@ -115,7 +114,7 @@ def networks_table(found: StudySearch) -> Table:
     names = _parameters([network for one in searches for network in one.result.ranking])
     units = {name: label_with_unit(name, parameter_unit(found.study, name)) for name in names}
     keys = ("layout", "index", "rank", "network", "elements", "value", "unit", "improvement_percent", "status")
-    there = [f"value in {label}" for label in condition_labels(found.study.conditions)]
+    there = [f"value in {label}" for label in found.study.condition_labels]
     every = [*keys, *units.values(), "at_bound", "starts", "agreed", "as_good", "equal_networks", *there]
     rows = [row for one in searches for row in _network_rows(one, units, there)]
     return Table("Networks", [Column(key=key) for key in every], [Row(cells(*map(row.get, every))) for row in rows])
@@ -192,7 +191,7 @@ def front_table(found: StudySearch) -> Table:
     names = _parameters(points)
     values = [label_with_unit(index, study.unit(index)) for index in study.trade_off]
     units = [label_with_unit(name, parameter_unit(study, name)) for name in names]
-    there = [f"{index} in {label}" for index in study.trade_off for label in condition_labels(study.conditions)]
+    there = [f"{index} in {label}" for index in study.trade_off for label in study.condition_labels]
     keys = ("layout", "up_to_elements", "point", "network", "elements", *values, *units, "at_bound", "status", *there)
     rows = []
     for one in found.fronts:

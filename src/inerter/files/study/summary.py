@@ -11,7 +11,7 @@ import xarray as xr
 
 from inerter.atomic_io import open_text
 from inerter.files.study.cases import Case, cases
-from inerter.files.study.conditions import IN_CONDITIONS, condition_labels
+from inerter.files.study.conditions import IN_CONDITIONS
 from inerter.files.study.design_numbers import DESIGN_NUMBERS, ENDS, NUMBER, numbers_in
 from inerter.files.study.results import PERCENT, UNCERTAIN, by_case, is_uncertain, units_by_name
 from inerter.files.study.study import Study
@@ -74,7 +74,7 @@ def _columns(study: Study, data: xr.Dataset) -> list[tuple[str, str, int | None]
         *((heading, f"{NUMBER}{name}.{end}", None) for heading, name, end in numbers),
         *(
             column
-            for i, label in enumerate(condition_labels(study.conditions))
+            for i, label in enumerate(study.condition_labels)
             for column in (
                 (f"value in {label}", f"{IN_CONDITIONS}value", i),
                 (f"improvement in {label}_percent", f"{IN_CONDITIONS}improvement", i),

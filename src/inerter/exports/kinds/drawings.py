@@ -27,8 +27,7 @@ def _figure(request: ExportSpec, suffix: str) -> bytes:
 
 
 def _tikz(request: ExportSpec, suffix: str) -> str:
-    from inerter.figures.networks import schematic  # noqa: PLC0415 - heavy
-    from inerter.figures.networks import networks_by_title  # noqa: PLC0415 - heavy
+    from inerter.figures.networks import networks_by_title, schematic  # noqa: PLC0415 - heavy
 
     lines = ["% written by inerter; needs \\usepackage{tikz}, one unit is one point"]
     for title, network in networks_by_title(request.networks).items():

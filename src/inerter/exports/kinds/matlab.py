@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from inerter.errors import ExportError
 from inerter.exports.kind import LINEAR_MODEL, ExportKind
-from inerter.exports.named_system import NamedSystem
+from inerter.exports.named_system import NamedQuantity, NamedSystem
 from inerter.exports.request import ExportSpec
 from inerter.records.writers import write_record_matlab
 
@@ -33,12 +33,10 @@ def _make(request: ExportSpec, suffix: str) -> str | bytes:
 
 def matlab_file(system: NamedSystem) -> bytes:
     """Variables A, B, C, D, E of a descriptor, and names, units, notes and title."""
-    data: dict[str, object] = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
-    if system.E is not None:
-        data["E"] = system.E
-    for what, several in (("state", system.states), ("input", system.inputs), ("output", system.outputs)):
-        data[f"{what}_names"] = _cells([one.name for one in several])
-        data[f"{what}_units"] = _cells([one.unit for one in several])
+    data: dict[str, object] = {**_matrices(system)}
+    for what, several in _quantities(system).items():
+        data[f"{what.lower()}_names"] = _cells([one.name for one in several])
+        data[f"{what.lower()}_units"] = _cells([one.unit for one in several])
     data |= {"notes": _cells(system.notes), "title": system.title}
     content = io.BytesIO()
     scipy.io.savemat(content, data, format="5", oned_as="column")  # type: ignore[arg-type]
@@ -50,18 +48,25 @@ def matlab_file(system: NamedSystem) -> bytes:
 def matlab_script(system: NamedSystem) -> str:
     """A script that makes the variable `sys`; numbers have 17 digits."""
     lines = [f"% {' '.join(system.title.split())}, written by inerter", *(f"% {note}" for note in system.notes)]
-    matrices = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
-    if system.E is not None:
-        matrices["E"] = system.E
-    for name, matrix in matrices.items():
+    for name, matrix in _matrices(system).items():
         lines += _matrix_lines(name, matrix)
     lines.append("sys = ss(A, B, C, D);" if system.E is None else "sys = dss(A, B, C, D, E);")
-    named = {"StateName": system.states, "InputName": system.inputs, "OutputName": system.outputs}
-    lines += [f"sys.{key} = {_cell_text([one.name for one in several])};" for key, several in named.items()]
+    named = _quantities(system).items()
+    lines += [f"sys.{what}Name = {_cell_text([one.name for one in several])};" for what, several in named]
     lines.append("if ~exist('OCTAVE_VERSION', 'builtin')  % whose systems have no units")
-    units = {"StateUnit": system.states, "InputUnit": system.inputs, "OutputUnit": system.outputs}
-    lines += [f"    sys.{key} = {_cell_text([one.unit for one in several])};" for key, several in units.items()]
+    lines += [f"    sys.{what}Unit = {_cell_text([one.unit for one in several])};" for what, several in named]
     return "\n".join([*lines, "end", ""])
+
+
+def _matrices(system: NamedSystem) -> dict[str, Matrix]:
+    """Matrices of a system by their names; E of a descriptor alone."""
+    matrices = {"A": system.A, "B": system.B, "C": system.C, "D": system.D}
+    return matrices if system.E is None else {**matrices, "E": system.E}
+
+
+def _quantities(system: NamedSystem) -> dict[str, Sequence[NamedQuantity]]:
+    """States, inputs and outputs of a system, by the words that begin the names of their properties."""
+    return {"State": system.states, "Input": system.inputs, "Output": system.outputs}
 
 
 def _cells(texts: Sequence[str]) -> NDArray[np.object_]:

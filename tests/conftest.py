@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 from _pytest.doctest import DoctestItem
-from all_kernels import compile_all
 from hypothesis import HealthCheck, settings
 
+import inerter
+from inerter.kernels.decorators import Kernel
+from inerter.kernels.prepare import prepare
 from inerter.work.chunks import THREADS
 
 collect_ignore_glob = ["conftest.py", "*/conftest.py"]  # as modules with doctests: two cannot have one name
@@ -33,7 +37,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     config = session.config
     whole = config.args_source is pytest.Config.ArgsSource.TESTPATHS and not config.option.collectonly
     if whole and config.getoption("numprocesses", None) and not hasattr(config, "workerinput"):
-        compile_all()
+        prepare(kernel for kernel in _kernels() if kernel.signature is not None)
 
 
 LONG_EXAMPLES = {"Fit", "identify", "identify_staged", "select_model"}
@@ -83,3 +87,12 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.freeze()
         gc.set_threshold(100_000, 20, 100)  # what tests make is small, and looking took a twentieth of their time
         gc.enable()
+
+
+def _kernels() -> Iterator[Kernel]:
+    """All kernels of the package that are not made for one size of system."""
+    root = Path(inerter.__file__).parent
+    for path in sorted(root.rglob("*.py")):
+        if "\n@kernel(" in path.read_text(encoding="utf-8"):
+            module = import_module(".".join((root.name, *path.relative_to(root).with_suffix("").parts)))
+            yield from (value for value in vars(module).values() if isinstance(value, Kernel))

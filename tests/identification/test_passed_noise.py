@@ -80,7 +80,7 @@ def test_five_unknowns_of_two_tones_in_motion_have_no_values() -> None:
 
 @pytest.mark.campaign
 def test_a_sweep_of_the_same_device_has_all_its_values() -> None:
-    fit = it.identify(RIG.run(it.chirp(2e-4, 1.0, 15.0, 3.2), 3.0), "elastic", starts=4)
+    fit = it.identify(RIG.run(it.chirp(2e-4, 1.0, 15.0, 3.2), 3.0), "elastic", starts=8)
     assert fit.status.ok
     for name, truth in TRUTH.items():
         low, high = fit.parameters[name].interval

@@ -226,7 +226,7 @@ def test_a_question_opens_by_the_keyboard(nothing: Served, visitors: Callable[..
     page.locator("#open-menu summary").click()
     page.get_by_role("button", name="The first screen").click()
     page.locator(".list-row", has_text=opened).wait_for()  # among those that were open before
-    assert page.locator(".card").count() == len(names)
+    wait_until(lambda: page.locator(".card").count() == len(names))
     page.get_by_role("button", name="Undo").click()
     page.wait_for_function("text => document.querySelector('input.title')?.value === text", arg=opened)
     page.reload()

@@ -206,10 +206,11 @@ def test_a_check_warns_of_tolerances_that_are_simulated(tmp_path: Path, evaluate
 
 @pytest.mark.parametrize(("optimise", "is_told"), [("expected-value", True), ("statistical-linearisation", False)])
 def test_a_check_warns_of_searches_that_simulate(tmp_path: Path, optimise: str, is_told: bool) -> None:
-    """Of the layout with friction; a search simulates no more designs than it is said to."""
+    """Of the layout with friction and free values; a search simulates no more designs than it is said to."""
     parts = 'k = "20 kN/m"\nc = { from = "100 N s/m", to = "10 kN s/m" }\nf = "20 N"'
     settings = f'indices = ["J1"]\noptimise = "{optimise}"'
-    study = load_text(tmp_path, study_text(settings, elements=parts, layouts='S1 = "k | c"\nS2 = "k | (c | f)"'))
+    layouts = 'S1 = "k | c"\nS2 = "k | (c | f)"\nS3 = "k | f"'
+    study = load_text(tmp_path, study_text(settings, elements=parts, layouts=layouts))
     lines = list(check_lines(read_tables(study.path, "a study"), study.path))
     told = [line for line in lines if "to optimise" in line]
     assert bool(told) is is_told, lines

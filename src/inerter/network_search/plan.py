@@ -123,9 +123,9 @@ def plan_search(
         )
     place, limits = places[0], check_limits(subject_to)
     kind, ends = next(iter(place.bounds.items()))
-    element = with_chosen_network(vehicle, place, kind.of(free(*ends), PLACE))
+    probe = with_chosen_network(vehicle, place, kind.of(free(*ends), PLACE))
     for asked in (index, *(limit.of for limit in limits)):
-        check_request(element, asked, method)
+        check_request(probe, asked, method)
     plan = SearchPlan(vehicle, index, method, limits, int(seed), None if starts is None else int(starts), place, None)
     if not plan.topologies:
         raise DesignError(f"There is no network to search: {place!r} leaves out all of them.")

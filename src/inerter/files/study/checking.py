@@ -69,14 +69,18 @@ def _search_warning(study: Study) -> Iterator[str]:
     if study.optimise is None or not isinstance(study.method(study.optimise), AveragingMethod):
         return
     designs = {name: study.design(name) for name in study.layouts}
-    simulated = {name: design for name, design in designs.items() if linear_notes(design.mechanism())}
-    each = [most_simulated(len(design.free_values()), bool(study.limits)) for design in simulated.values()]
-    if any(each):
+    simulated = {
+        name: most_simulated(len(design.free_values()), bool(study.limits))
+        for name, design in designs.items()
+        if linear_notes(design.mechanism()) and design.free_values()
+    }
+    if simulated:
         several = math.prod(len(sweep.values) for sweep in study.sweeps) * max(len(study.conditions), 1)
+        most = sum(simulated.values()) * len(study.indices) * several
         yield (
             f"Warning: to optimise {format_list(list(simulated))}, {study.optimise} simulates up to "
-            f"{format_number(sum(each) * len(study.indices) * several)} designs, each on all of its roads. One takes "
-            f"some 50 ms for a quarter car with friction, and up to seconds for several axles with gaps."
+            f"{format_number(most)} designs, each on all of its roads. One takes some 50 ms for a quarter car with "
+            f"friction, and up to seconds for several axles with gaps."
         )
 
 
